@@ -1,0 +1,70 @@
+// The compiled, immutable form of a scene that rays run on.
+#pragma once
+
+#include "tracer/accel/hit.h"
+#include "tracer/geometry/ray.h"
+#include "tracer/scene/scene.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+namespace raypick {
+
+struct BuildOptions {
+    int threads = 0;       // 0: all cores. The tree is the same for any number
+    std::stop_token stop;  // building then throws Cancelled
+};
+
+struct AccelStats {
+    std::uint64_t triangles = 0;  // of unique meshes
+    std::uint64_t nodes = 0;
+    std::uint64_t bytes = 0;
+};
+
+// Two levels: one tree a mesh, shared by its instances and by later Accels of an edited scene, and
+// one tree over the objects. All queries are const and may run on many threads at once. A ray with
+// a NaN hits nothing.
+class Accel {
+public:
+    // Builds for a snapshot of a scene. Meshes whose arrays also stand in `reuse` keep their trees
+    // from there: moving an object rebuilds the top level only. Throws Error (check_scene) or
+    // Cancelled.
+    explicit Accel(std::shared_ptr<const Scene> scene, const BuildOptions& options = {},
+                   const Accel* reuse = nullptr);
+    ~Accel();
+    Accel(Accel&&) noexcept;
+    Accel& operator=(Accel&&) noexcept;
+    Accel(const Accel&) = delete;
+    Accel& operator=(const Accel&) = delete;
+
+    // Closest hit; ties go to the lowest (object, primitive).
+    [[nodiscard]] std::optional<Hit> intersect(const Ray& ray, const RayQuery& query = {}) const;
+    // Any hit.
+    [[nodiscard]] bool occluded(const Ray& ray, const RayQuery& query = {}) const;
+    // Every hit along the ray, by t, then by (object, primitive).
+    [[nodiscard]] std::vector<Hit> intersect_all(const Ray& ray, const RayQuery& query = {}) const;
+
+    // Batches: the same answers as one by one. `hits` (invalid on a miss) and `blocked` (0 or 1)
+    // are as long as `rays`.
+    void intersect(std::span<const Ray> rays, std::span<Hit> hits,
+                   const RayQuery& query = {}) const;
+    void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                  const RayQuery& query = {}) const;
+
+    [[nodiscard]] const Scene& scene() const;
+    [[nodiscard]] std::shared_ptr<const Scene> shared_scene() const;
+    // Of all finite objects.
+    [[nodiscard]] const Bounds& bounds() const;
+    [[nodiscard]] AccelStats stats() const;
+
+private:
+    struct State;
+    std::unique_ptr<const State> state_;
+};
+
+}  // namespace raypick

@@ -1,0 +1,28 @@
+// What a hit looks like from close by: computed on demand from a Hit.
+#pragma once
+
+#include "tracer/accel/hit.h"
+#include "tracer/geometry/ray.h"
+#include "tracer/scene/scene.h"
+
+namespace raypick {
+
+struct SurfacePoint {
+    glm::vec3 position{0.0f};          // scene space, on the surface to float rounding
+    glm::vec3 position_error{0.0f};    // bound on |position - the exact point|, per axis
+    glm::vec3 geometric_normal{0.0f};  // unit, outward
+    glm::vec3 shading_normal{0.0f};    // unit, interpolated on meshes with normals, outward
+    glm::vec2 uv{0.0f};                // the hit's uv
+    bool front_face = true;
+    MaterialId material = kNoMaterial;
+};
+
+// `hit` must come from this ray and this scene.
+SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit);
+
+// Origin for a ray that leaves the surface on the side that `direction` points to: moved off by the
+// point's own error bound and no more. Source: Pharr, Jakob, Humphreys, Physically Based Rendering,
+// 4th ed. 2023, section 6.8.
+glm::vec3 offset_origin(const SurfacePoint& point, const glm::vec3& direction);
+
+}  // namespace raypick

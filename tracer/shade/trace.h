@@ -1,0 +1,47 @@
+// trace(ray): the notes' recursive ray tracer.
+#pragma once
+
+#include "tracer/accel/accel.h"
+#include "tracer/accel/surface.h"
+#include "tracer/shade/settings.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <span>
+
+namespace raypick {
+
+// Rays by kind. Sums over pixels: the same for any number of threads.
+struct RayCounts {
+    std::uint64_t eye = 0;
+    std::uint64_t eye_hits = 0;
+    std::uint64_t reflection = 0;
+    std::uint64_t refraction = 0;
+    std::uint64_t shadow = 0;
+    std::uint64_t shadow_blocked = 0;
+
+    [[nodiscard]] std::uint64_t total() const { return eye + reflection + refraction + shadow; }
+    RayCounts& operator+=(const RayCounts& other);
+    friend bool operator==(const RayCounts&, const RayCounts&) = default;
+};
+
+// One traced eye ray: the colour and, for the frame's other channels, what was hit first.
+struct TracedRay {
+    glm::vec3 colour{0.0f};  // linear RGB
+    Hit hit;                 // invalid: background
+    glm::vec3 normal{0.0f};  // shading normal towards the eye, scene space; 0 on a miss
+};
+
+// Follows an eye ray (depth 1) through the scene. `lights` as from effective_lights. Thread-safe;
+// adds the rays it shot to `counts`.
+TracedRay trace(const Accel& accel, std::span<const Light> lights, const RenderSettings& settings,
+                const Ray& ray, RayCounts& counts);
+
+// Phong's local term of one light: what reaches the eye along -`ray_direction` of a light of colour
+// 1 per channel from unit direction `to_light`. `normal` is the unit shading normal on the eye's
+// side. The GLSL twin is phong() in shaders/phong.glsl.
+glm::vec3 phong(const Material& material, const glm::vec3& normal, const glm::vec3& to_light,
+                const glm::vec3& to_eye);
+
+}  // namespace raypick

@@ -1,0 +1,41 @@
+// Draws a scene with OpenGL 3.3 so that every pixel shows what the tracer's eye ray hits there:
+// same camera, same local Phong shading, same object and primitive ids, same tie rule.
+#pragma once
+
+#include "tracer/geometry/camera.h"
+#include "tracer/render/image.h"
+#include "tracer/scene/scene.h"
+
+#include <memory>
+
+namespace raypick {
+
+// Needs a current OpenGL 3.3 core context with its functions loaded, the same one in every call.
+class Rasterizer {
+public:
+    Rasterizer();
+    ~Rasterizer();
+    Rasterizer(const Rasterizer&) = delete;
+    Rasterizer& operator=(const Rasterizer&) = delete;
+
+    // Uploads a scene. Meshes whose arrays are on the GPU already stay there.
+    void set_scene(std::shared_ptr<const Scene> scene);
+
+    // Draws a frame of the scene into this object's own buffers. Only objects with
+    // (object.mask & mask) != 0 are drawn. camera.near clips; far is infinite.
+    void draw(const Camera& camera, ImageSize size, std::uint32_t mask = 0xffffffffu);
+
+    // The last frame's textures: linear RGB with t in alpha (RGBA32F), and object id (R32UI,
+    // kNoObject on background). Row 0 of the texture is the BOTTOM row, as OpenGL has it.
+    [[nodiscard]] unsigned colour_texture() const;
+    [[nodiscard]] unsigned object_texture() const;
+
+    // The last frame, read back: colour, depth (t), normal, object and primitive; row 0 on top.
+    [[nodiscard]] Image read_image() const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace raypick
