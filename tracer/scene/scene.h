@@ -94,6 +94,18 @@ void choose_origin(Scene& scene);
 // the bounds. `near` is set from the bounds.
 Camera default_camera(const Scene& scene, ImageSize size, const glm::dvec3& up = {0, 1, 0});
 
+// What a person says about the camera, in file coordinates; the rest comes from the file or from
+// default_camera.
+struct CameraOverride {
+    std::optional<glm::dvec3> eye;
+    std::optional<glm::dvec3> at;
+    std::optional<glm::dvec3> up;
+    std::optional<double> fovy;  // degrees
+};
+
+// The camera to begin with. Throws Error (check_camera) if the numbers make no view.
+Camera choose_camera(const Scene& scene, ImageSize size, const CameraOverride& wanted);
+
 // The scene's lights as seen from this camera: the scene's own, or a headlight.
 std::vector<Light> effective_lights(const Scene& scene, const Camera& camera);
 
