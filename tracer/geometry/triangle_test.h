@@ -1,0 +1,90 @@
+// The one ray-triangle test: watertight, in double, independent of the order of the corners.
+//
+// Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013. The edge
+// functions of two triangles that share an edge are exact negatives of each other, so no ray slips
+// between them. Sums of three terms are taken by ascending magnitude, so that neither the winding
+// nor the first corner changes a bit of t.
+#pragma once
+
+#include "tracer/geometry/shapes.h"
+
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace raypick {
+
+// A ray in coordinates in which it runs along +z from 0.
+struct ShearedRay {
+    glm::dvec3 origin{0.0};
+    int kx = 0;
+    int ky = 1;
+    int kz = 2;
+    double sx = 0.0;
+    double sy = 0.0;
+    double sz = 1.0;
+};
+
+inline ShearedRay shear(const ObjectRay& ray) {
+    const glm::dvec3 d = glm::abs(ray.direction);
+    ShearedRay s;
+    s.origin = ray.origin;
+    s.kz = d.x > d.y ? (d.x > d.z ? 0 : 2) : (d.y > d.z ? 1 : 2);
+    s.kx = (s.kz + 1) % 3;
+    s.ky = (s.kx + 1) % 3;
+    if (ray.direction[s.kz] < 0.0) std::swap(s.kx, s.ky);  // keeps the winding
+    s.sx = ray.direction[s.kx] / ray.direction[s.kz];
+    s.sy = ray.direction[s.ky] / ray.direction[s.kz];
+    s.sz = 1.0 / ray.direction[s.kz];
+    return s;
+}
+
+// The sum by ascending magnitude: the same whatever the order of the arguments.
+inline double ordered_sum(double a, double b, double c) {
+    if (std::abs(a) > std::abs(b)) std::swap(a, b);
+    if (std::abs(b) > std::abs(c)) std::swap(b, c);
+    if (std::abs(a) > std::abs(b)) std::swap(a, b);
+    return (a + b) + c;
+}
+
+struct TriangleHit {
+    double t = 0.0;
+    double u = 0.0;  // weight of corner b
+    double v = 0.0;  // weight of corner c
+    bool front_face = false;
+};
+
+// Degenerate triangles, NaNs and rays in the triangle's plane miss.
+inline std::optional<TriangleHit> intersect_triangle(const ShearedRay& ray, const glm::dvec3& a,
+                                                     const glm::dvec3& b, const glm::dvec3& c) {
+    const glm::dvec3 pa = a - ray.origin;
+    const glm::dvec3 pb = b - ray.origin;
+    const glm::dvec3 pc = c - ray.origin;
+    const double ax = pa[ray.kx] - ray.sx * pa[ray.kz];
+    const double ay = pa[ray.ky] - ray.sy * pa[ray.kz];
+    const double bx = pb[ray.kx] - ray.sx * pb[ray.kz];
+    const double by = pb[ray.ky] - ray.sy * pb[ray.kz];
+    const double cx = pc[ray.kx] - ray.sx * pc[ray.kz];
+    const double cy = pc[ray.ky] - ray.sy * pc[ray.kz];
+    const double u = cx * by - cy * bx;
+    const double v = ax * cy - ay * cx;
+    const double w = bx * ay - by * ax;
+    const bool positive = u >= 0.0 && v >= 0.0 && w >= 0.0;
+    const bool negative = u <= 0.0 && v <= 0.0 && w <= 0.0;
+    if (!(positive || negative)) return std::nullopt;
+    const double determinant = ordered_sum(u, v, w);
+    if (!(std::abs(determinant) > 0.0)) return std::nullopt;
+    const double scaled = ordered_sum(u * (ray.sz * pa[ray.kz]), v * (ray.sz * pb[ray.kz]),
+                                      w * (ray.sz * pc[ray.kz]));
+    TriangleHit hit;
+    hit.t = scaled / determinant;
+    hit.u = v / determinant;
+    hit.v = w / determinant;
+    hit.front_face = determinant > 0.0;
+    return hit;
+}
+
+}  // namespace raypick
