@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <variant>
 #include <vector>
 
@@ -54,10 +55,13 @@ struct Scene {
     glm::vec3 background{0.18f, 0.20f, 0.23f};
     glm::vec3 ambient{0.1f};
     ObjectId next_object_id = 0;
+    // Kept by add_object: every name given so far, with the last number behind a "#" of it.
+    std::unordered_map<std::string, std::uint32_t> used_names;
 };
 
-// Appends an object, gives it the next id and makes its name unique ("" becomes "object"). Returns
-// the id. The caller sees to it that mesh and material ids exist (check_scene).
+// Appends an object, gives it the next id and makes its name unique ("" becomes "object"); an empty
+// path becomes "/" and the name. A name is not given again after its object is gone. Returns the
+// id. The caller sees to it that mesh and material ids exist (check_scene).
 ObjectId add_object(Scene& scene, Object object);
 MaterialId add_material(Scene& scene, Material material);
 MeshId add_mesh(Scene& scene, Mesh mesh);

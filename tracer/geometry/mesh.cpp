@@ -1,0 +1,88 @@
+#include "tracer/geometry/shapes.h"
+
+#include "tracer/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace raypick {
+
+namespace {
+
+void check_length(const Mesh& mesh, const char* array, std::size_t length) {
+    if (length == 0 || length == mesh.positions.size()) return;
+    throw Error(fmt::format("mesh \"{}\": {} {} for {} positions: give one a position or none",
+                            mesh.name, length, array, mesh.positions.size()));
+}
+
+void check_indices(const Mesh& mesh) {
+    const std::size_t count = mesh.positions.size();
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const glm::uvec3& t = mesh.triangles[i];
+        const std::uint32_t largest = std::max({t.x, t.y, t.z});
+        if (largest >= count) {
+            throw Error(fmt::format("mesh \"{}\": triangle {} uses position {}, but there are {}",
+                                    mesh.name, i, largest, count));
+        }
+    }
+}
+
+void check_parts(const Mesh& mesh) {
+    std::uint64_t next = 0;
+    for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
+        const Part& part = mesh.parts[i];
+        if (part.first != next) {
+            throw Error(fmt::format("mesh \"{}\": part {} begins at triangle {}, but should at {}",
+                                    mesh.name, i, part.first, next));
+        }
+        next += part.count;
+    }
+    if (!mesh.parts.empty() && next != mesh.triangles.size()) {
+        throw Error(fmt::format("mesh \"{}\": the parts hold {} triangles, the mesh has {}",
+                                mesh.name, next, mesh.triangles.size()));
+    }
+}
+
+}  // namespace
+
+Mesh make_mesh(std::string name, MeshData data, std::vector<Part> parts) {
+    Mesh mesh;
+    mesh.name = std::move(name);
+    mesh.parts = std::move(parts);
+    mesh.storage = std::make_shared<const MeshData>(std::move(data));
+    mesh.positions = mesh.storage->positions;
+    mesh.normals = mesh.storage->normals;
+    mesh.uvs = mesh.storage->uvs;
+    mesh.triangles = mesh.storage->triangles;
+    return mesh;
+}
+
+Mesh borrow_mesh(std::string name, std::span<const glm::vec3> positions,
+                 std::span<const glm::uvec3> triangles, std::span<const glm::vec3> normals) {
+    Mesh mesh;
+    mesh.name = std::move(name);
+    mesh.positions = positions;
+    mesh.normals = normals;
+    mesh.triangles = triangles;
+    return mesh;
+}
+
+void check_mesh(const Mesh& mesh) {
+    check_length(mesh, "normals", mesh.normals.size());
+    check_length(mesh, "uvs", mesh.uvs.size());
+    check_indices(mesh);
+    check_parts(mesh);
+}
+
+const Part* part_of(const Mesh& mesh, std::uint32_t triangle) {
+    const auto after =
+        std::upper_bound(mesh.parts.begin(), mesh.parts.end(), triangle,
+                         [](std::uint32_t t, const Part& part) { return t < part.first; });
+    if (after == mesh.parts.begin()) return nullptr;
+    const Part& part = *(after - 1);
+    return triangle - part.first < part.count ? &part : nullptr;
+}
+
+}  // namespace raypick
