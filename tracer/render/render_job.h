@@ -31,10 +31,10 @@ public:
     static constexpr int kCoarseStep = 8;
     static constexpr int kTileSize = 32;
 
-    // Starts at once. `camera.near` limits the eye rays. Throws Error on a bad camera or an empty
-    // size.
+    // Starts at once. `camera.near` limits the eye rays. Who won't look at it before it is done
+    // leaves the coarse image out. Throws Error on a bad camera or an empty size.
     RenderJob(std::shared_ptr<const Accel> accel, const Camera& camera, ImageSize size,
-              const RenderSettings& settings);
+              const RenderSettings& settings, bool coarse_first = true);
     ~RenderJob();
     RenderJob(const RenderJob&) = delete;
     RenderJob& operator=(const RenderJob&) = delete;

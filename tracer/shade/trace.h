@@ -38,9 +38,9 @@ struct TracedRay {
 TracedRay trace(const Accel& accel, std::span<const Light> lights, const RenderSettings& settings,
                 const Ray& ray, RayCounts& counts);
 
-// Phong's local term of one light: what reaches the eye along -`ray_direction` of a light of colour
-// 1 per channel from unit direction `to_light`. `normal` is the unit shading normal on the eye's
-// side. The GLSL twin is phong() in shaders/phong.glsl.
+// Phong's diffuse and specular terms for a light of colour 1; 0 if it shines from behind. All
+// directions are unit; `normal` is the shading normal on the eye's side. The GLSL twin is phong()
+// in shaders/phong.glsl.
 glm::vec3 phong(const Material& material, const glm::vec3& normal, const glm::vec3& to_light,
                 const glm::vec3& to_eye);
 

@@ -1,0 +1,56 @@
+#include "tracer/error.h"
+#include "tracer/render/image_files.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+
+#include <exception>
+
+namespace raypick {
+
+namespace {
+
+// Adds a channel whose samples lie `stride` bytes apart. OpenEXR takes a non-const pointer although
+// it only reads.
+template <typename T>
+void add_channel(Imf::Header& header, Imf::FrameBuffer& frame, const char* name,
+                 Imf::PixelType type, const T* first, std::size_t stride, int cols) {
+    header.channels().insert(name, Imf::Channel(type));
+    auto* base = const_cast<char*>(reinterpret_cast<const char*>(first));
+    frame.insert(name, Imf::Slice(type, base, stride, stride * static_cast<std::size_t>(cols)));
+}
+
+}  // namespace
+
+void write_exr_file(const Image& image, const std::filesystem::path& file,
+                    const std::filesystem::path& target) {
+    try {
+        const int cols = image.size.cols;
+        Imf::Header header(cols, image.size.rows);
+        header.compression() = Imf::ZIP_COMPRESSION;
+        Imf::FrameBuffer frame;
+        const auto vector = [&](const char* name, const float* first) {
+            add_channel(header, frame, name, Imf::FLOAT, first, sizeof(glm::vec3), cols);
+        };
+        vector("R", &image.colour[0].x);
+        vector("G", &image.colour[0].y);
+        vector("B", &image.colour[0].z);
+        vector("N.X", &image.normal[0].x);
+        vector("N.Y", &image.normal[0].y);
+        vector("N.Z", &image.normal[0].z);
+        add_channel(header, frame, "Z", Imf::FLOAT, image.depth.data(), sizeof(float), cols);
+        add_channel(header, frame, "object_id", Imf::UINT, image.object.data(),
+                    sizeof(std::uint32_t), cols);
+        add_channel(header, frame, "primitive_id", Imf::UINT, image.primitive.data(),
+                    sizeof(std::uint32_t), cols);
+        Imf::OutputFile out(file.c_str(), header);
+        out.setFrameBuffer(frame);
+        out.writePixels(image.size.rows);
+    } catch (const std::exception& failure) {
+        throw FileError(target.string(), std::string("can't be written: ") + failure.what());
+    }
+}
+
+}  // namespace raypick

@@ -1,0 +1,106 @@
+#include "tracer/render/image.h"
+
+#include "tracer/accel/hit.h"
+#include "tracer/error.h"
+#include "tracer/render/image_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <system_error>
+
+#include <unistd.h>
+
+namespace raypick {
+
+namespace {
+
+std::string lower_extension(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+// A name beside the target that no other process uses; removed unless renamed.
+class TemporaryFile {
+public:
+    explicit TemporaryFile(const std::filesystem::path& target)
+        : target_(target), path_(target.string() + fmt::format(".{}.part", ::getpid())) {}
+    ~TemporaryFile() {
+        std::error_code ignored;
+        if (!renamed_) std::filesystem::remove(path_, ignored);
+    }
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+    void rename() {
+        std::error_code failure;
+        std::filesystem::rename(path_, target_, failure);
+        if (failure) {
+            throw FileError(target_.string(), "can't be written: " + failure.message());
+        }
+        renamed_ = true;
+    }
+
+private:
+    std::filesystem::path target_;
+    std::filesystem::path path_;
+    bool renamed_ = false;
+};
+
+}  // namespace
+
+Image make_image(ImageSize size) {
+    const std::size_t count = size.pixel_count();
+    Image image;
+    image.size = size;
+    image.colour.assign(count, glm::vec3(0.0f));
+    image.depth.assign(count, std::numeric_limits<float>::infinity());
+    image.normal.assign(count, glm::vec3(0.0f));
+    image.object.assign(count, kNoObject);
+    image.primitive.assign(count, 0xffffffffu);
+    return image;
+}
+
+float srgb_from_linear(float linear) {
+    if (linear <= 0.0031308f) return 12.92f * linear;
+    return 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
+}
+
+float linear_from_srgb(float srgb) {
+    if (srgb <= 0.04045f) return srgb / 12.92f;
+    return std::pow((srgb + 0.055f) / 1.055f, 2.4f);
+}
+
+std::uint8_t srgb_byte(float linear) {
+    if (!(linear > 0.0f)) return 0;
+    if (linear >= 1.0f) return 255;
+    return static_cast<std::uint8_t>(std::lround(255.0f * srgb_from_linear(linear)));
+}
+
+std::string unsupported_image_name(const std::filesystem::path& file) {
+    const std::string extension = lower_extension(file);
+    if (extension == ".png" || extension == ".exr") return "";
+    return "images are written as .png or .exr, not \"" + file.extension().string() + "\"";
+}
+
+void write_image(const Image& image, const std::filesystem::path& file) {
+    if (const std::string problem = unsupported_image_name(file); !problem.empty()) {
+        throw FileError(file.string(), problem);
+    }
+    TemporaryFile temporary(file);
+    if (lower_extension(file) == ".png") {
+        write_png_file(image, temporary.path(), file);
+    } else {
+        write_exr_file(image, temporary.path(), file);
+    }
+    temporary.rename();
+}
+
+}  // namespace raypick
