@@ -11,7 +11,8 @@ enum class MouseButton { left, middle, right };
 
 // Feed it every press, move and release that the UI did not take. A click is a press inside the
 // view and a release of the same button, the cursor never having been farther than kSlop window
-// units from the press. Anything else is a drag, also when it ends where it began.
+// units from the press and no other button pressed meanwhile. Anything else is a drag, also when it
+// ends where it began.
 class ClickDetector {
 public:
     static constexpr double kSlop = 4.0;  // window units
@@ -32,6 +33,7 @@ private:
     std::optional<MouseButton> pressed_;
     Cursor start_;
     bool dragged_ = false;
+    bool chorded_ = false;  // another button went down meanwhile
 };
 
 }  // namespace raypick
