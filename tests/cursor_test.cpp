@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -76,7 +77,7 @@ TEST(Cursor, FourCornersAtEveryScale) {
 TEST(Cursor, EveryPixelCentreComesBack) {
     for (const double scale : {1.0, 1.25, 1.5, 2.0}) {
         const WindowMetrics w = window_at(scale, 3.0 - scale);
-        for (int i = 0; i < w.framebuffer_rows; ++i) {
+        for (int i = 0; i < std::min(w.framebuffer_rows, w.framebuffer_cols); ++i) {
             const Cursor centre{(i + 0.5) * w.window_width / w.framebuffer_cols,
                                 (i + 0.5) * w.window_height / w.framebuffer_rows};
             ASSERT_EQ(pixel_under(centre, w, whole(w)), (Pixel{i, i})) << "scale " << scale;
