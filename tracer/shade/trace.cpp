@@ -2,7 +2,6 @@
 
 #include <glm/geometric.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -177,8 +176,9 @@ glm::vec3 phong(const Material& material, const glm::vec3& normal, const glm::ve
     const float diffuse = glm::dot(normal, to_light);
     if (!(diffuse > 0.0f)) return glm::vec3(0.0f);
     const glm::vec3 mirrored = 2.0f * diffuse * normal - to_light;
-    const float highlight =
-        std::pow(std::max(glm::dot(mirrored, to_eye), 0.0f), material.shininess);
+    // GLSL leaves pow(0, 0) undefined, so both sides take 0 where the eye is not in the lobe.
+    const float lobe = glm::dot(mirrored, to_eye);
+    const float highlight = lobe > 0.0f ? std::pow(lobe, material.shininess) : 0.0f;
     return material.diffuse * diffuse + material.specular * highlight;
 }
 
