@@ -1,1 +1,2 @@
 # Tests of the room in this file's name.
+raypick_test(scene_test LABELS cpu)
