@@ -7,3 +7,6 @@ if(NOT RAYPICK_SANITIZE)
                 -P ${CMAKE_CURRENT_SOURCE_DIR}/package/check.cmake)
     set_tests_properties(package PROPERTIES LABELS cpu TIMEOUT 300)
 endif()
+add_test(NAME readme
+    COMMAND ${CMAKE_COMMAND} -P ${CMAKE_CURRENT_SOURCE_DIR}/package/check_readme.cmake)
+set_tests_properties(readme PROPERTIES LABELS cpu)
