@@ -123,8 +123,9 @@ double near_for_bounds(const Camera& camera, const Bounds& bounds) {
     // clipping arithmetic stays well conditioned.
     const double focus = 1e-3 * glm::length(camera.at - camera.eye);
     if (bounds.empty()) return focus;
-    const double size = 1e-5 * static_cast<double>(glm::length(bounds.extent()));
-    return size > 0.0 ? std::min(focus, size) : focus;
+    const double size = glm::length(glm::dvec3(bounds.extent()));
+    const double distance = glm::length(glm::dvec3(bounds.centre()) - camera.eye);
+    return std::min(focus, 1e-5 * std::max(size, distance));
 }
 
 Camera frame_bounds(const Bounds& bounds, const glm::dvec3& direction, const glm::dvec3& up,
@@ -140,13 +141,13 @@ Camera frame_bounds(const Bounds& bounds, const glm::dvec3& direction, const glm
     const glm::dvec3 view = glm::normalize(direction);
     camera.eye = camera.at - view;
     const CameraFrame frame = camera_frame(camera);
-    const double tan_y = image_height(camera) / 2;
+    const double tan_y = image_height(camera) / 2 / kMargin;
     const double tan_x = tan_y * aspect;
     double distance = 0.0;
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 p((corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
                            (corner & 4) != 0 ? high.z : low.z);
-        const glm::dvec3 offset = kMargin * (p - camera.at);
+        const glm::dvec3 offset = p - camera.at;
         const double across = std::max(std::abs(glm::dot(frame.vx, offset)) / tan_x,
                                        std::abs(glm::dot(frame.vy, offset)) / tan_y);
         distance = std::max(distance, across - glm::dot(view, offset));
