@@ -1,1 +1,3 @@
 # Tests of the room in this file's name.
+raypick_test(gl_handle_gl_test LABELS gl LIBS raypick_raster)
+raypick_test(rasterizer_gl_test LABELS gl LIBS raypick_raster)

@@ -1,0 +1,68 @@
+// Triangles: t and barycentrics from the triangle's own corners, so that depth does not depend on
+// what the rasteriser interpolates. Which pixels are covered is the rasteriser's business: a ray
+// that passes by the edge by less than its resolution gets the edge's t.
+//
+// Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
+uniform usamplerBuffer triangles;  // a texel: three vertices and the material
+uniform samplerBuffer positions;   // object space
+uniform samplerBuffer normals;     // object space, if has_normals
+uniform bool has_normals;
+uniform int first_primitive;  // of this draw, which may be a part of the mesh
+uniform vec3 eye_high;        // the eye in object space is eye_high + eye_low
+uniform vec3 eye_low;
+
+vec3 corner(uint vertex) {
+    return (texelFetch(positions, int(vertex)).xyz - eye_high) - eye_low;
+}
+
+// Axes turned so that z is the one along which the ray runs fastest.
+vec3 turned(vec3 v, int fastest) {
+    return fastest == 0 ? v.yzx : fastest == 1 ? v.zxy : v;
+}
+
+// Barycentric weights of the point where the ray meets the triangle's plane, moved onto the
+// triangle; NaN if the triangle is seen edge-on.
+vec3 weights(vec3 a, vec3 b, vec3 c, vec2 slope) {
+    vec2 pa = a.xy - slope * a.z;
+    vec2 pb = b.xy - slope * b.z;
+    vec2 pc = c.xy - slope * c.z;
+    vec3 w = vec3(pc.x * pb.y - pc.y * pb.x, pa.x * pc.y - pa.y * pc.x,
+                  pb.x * pa.y - pb.y * pa.x);
+    if (w.x + w.y + w.z < 0.0) w = -w;
+    w = max(w, 0.0);
+    return w / (w.x + w.y + w.z);
+}
+
+Surface closest_surface(vec3 direction, float t_min) {
+    uvec4 triangle = texelFetch(triangles, gl_PrimitiveID);
+    vec3 a = corner(triangle.x);
+    vec3 b = corner(triangle.y);
+    vec3 c = corner(triangle.z);
+    vec3 d = object_direction(direction);
+    vec3 speed = abs(d);
+    int fastest = speed.x > speed.y ? (speed.x > speed.z ? 0 : 2) : (speed.y > speed.z ? 1 : 2);
+    d = turned(d, fastest);
+    vec3 ta = turned(a, fastest);
+    vec3 tb = turned(b, fastest);
+    vec3 tc = turned(c, fastest);
+    vec3 w = weights(ta, tb, tc, d.xy / d.z);
+
+    Surface s;
+    s.t = dot(w, vec3(ta.z, tb.z, tc.z)) / d.z;
+    vec3 ab = b - a;
+    vec3 ac = c - a;
+    float scale = max(largest(ab), largest(ac));
+    vec3 face = cross(ab / scale, ac / scale);
+    s.geometric = scene_normal(face);
+    s.shading = s.geometric;
+    if (has_normals) {
+        vec3 n = w.x * texelFetch(normals, int(triangle.x)).xyz +
+                 w.y * texelFetch(normals, int(triangle.y)).xyz +
+                 w.z * texelFetch(normals, int(triangle.z)).xyz;
+        if (dot(n, face) < 0.0) n = -n;  // as tracer/accel/surface.cpp
+        if (dot(n, n) > 1e-12) s.shading = scene_normal(n);
+    }
+    s.primitive = uint(first_primitive + gl_PrimitiveID);
+    s.material = triangle.w;
+    return s;
+}

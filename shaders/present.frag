@@ -1,0 +1,77 @@
+// Puts a frame on the screen: linear colour as sRGB, outlines around selected and hovered objects.
+uniform sampler2D colour;
+uniform usampler2D object;
+uniform ivec2 frame_size;      // of the textures: columns and rows
+uniform vec2 view_origin;      // bottom left corner of the view in the framebuffer
+uniform vec2 view_size;        // pixels
+uniform usamplerBuffer selected;  // ascending ids
+uniform int selected_count;
+uniform uint hovered;  // kNoObject: none
+uniform vec3 selected_colour;
+uniform vec3 hovered_colour;
+uniform float outline_width;
+
+const uint kNoObject = 0xffffffffu;
+
+out vec4 screen;
+
+// srgb_from_linear of tracer/render/image.h. NaN becomes 0.
+float srgb_from_linear(float linear) {
+    if (!(linear > 0.0)) return 0.0;
+    if (linear <= 0.0031308) return 12.92 * linear;
+    return min(1.055 * pow(linear, 1.0 / 2.4) - 0.055, 1.0);
+}
+
+// The texel shown at a pixel of the view (the frame may be coarser than the view).
+ivec2 texel_at(vec2 pixel) {
+    return clamp(ivec2(floor(pixel * vec2(frame_size) / view_size)), ivec2(0), frame_size - 1);
+}
+
+uint object_at(vec2 pixel) {
+    return texelFetch(object, texel_at(pixel), 0).r;
+}
+
+bool is_selected(uint id) {
+    int low = 0;
+    int high = selected_count;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (texelFetch(selected, middle).r < id) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low < selected_count && texelFetch(selected, low).r == id;
+}
+
+// 2 next to a selected object, 1 next to the hovered one, else 0. Beyond the view's edges there is
+// nothing to outline.
+int outline(vec2 pixel) {
+    uint here = object_at(pixel);
+    int reach = int(ceil(outline_width));
+    int found = 0;
+    for (int y = -reach; y <= reach; ++y) {
+        for (int x = -reach; x <= reach; ++x) {
+            vec2 other = pixel + vec2(x, y);
+            if (float(x * x + y * y) > outline_width * outline_width) continue;
+            if (any(lessThan(other, vec2(0.0))) || any(greaterThanEqual(other, view_size))) continue;
+            uint id = object_at(other);
+            if (id == here || id == kNoObject) continue;
+            if (is_selected(id)) return 2;
+            if (id == hovered) found = 1;
+        }
+    }
+    return found;
+}
+
+void main() {
+    vec2 pixel = gl_FragCoord.xy - view_origin;
+    vec3 linear = texelFetch(colour, texel_at(pixel), 0).rgb;
+    screen = vec4(srgb_from_linear(linear.r), srgb_from_linear(linear.g),
+                  srgb_from_linear(linear.b), 1.0);
+    if (selected_count == 0 && hovered == kNoObject) return;
+    int mark = outline(pixel);
+    if (mark == 2) screen.rgb = selected_colour;
+    if (mark == 1) screen.rgb = hovered_colour;
+}

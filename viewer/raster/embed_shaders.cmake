@@ -1,0 +1,11 @@
+# Writes OUTPUT, a C++ file with every file of SHADERS (a list) as a string.
+set(text "// Generated from shaders/ by embed_shaders.cmake.\n#include \"viewer/gl/shader_source.h\"\n\n")
+string(APPEND text "namespace raypick {\n\nnamespace {\n\nconstexpr EmbeddedShader kShaders[] = {\n")
+foreach(shader IN LISTS SHADERS)
+    get_filename_component(name "${shader}" NAME)
+    file(READ "${shader}" source)
+    string(APPEND text "    {\"${name}\", R\"glsl(${source})glsl\"},\n")
+endforeach()
+string(APPEND text "};\n\n}  // namespace\n\nstd::span<const EmbeddedShader> embedded_shaders() {\n")
+string(APPEND text "    return kShaders;\n}\n\n}  // namespace raypick\n")
+file(WRITE "${OUTPUT}" "${text}")

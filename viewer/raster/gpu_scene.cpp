@@ -1,0 +1,125 @@
+#include "viewer/raster/gpu_scene.h"
+
+#include "tracer/error.h"
+#include "viewer/gl/load_gl.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+
+namespace raypick {
+
+namespace {
+
+BufferTexture upload_materials(const Scene& scene) {
+    std::vector<glm::vec4> texels;
+    const auto add = [&texels](const Material& m) {
+        texels.emplace_back(m.ambient, m.shininess);
+        texels.emplace_back(m.diffuse, 0.0f);
+        texels.emplace_back(m.specular, 0.0f);
+        texels.emplace_back(m.emissive, 0.0f);
+    };
+    for (const Material& m : scene.materials)
+        add(m);
+    add(material(scene, kNoMaterial));
+    return {GL_RGBA32F, sizeof(glm::vec4), std::as_bytes(std::span(texels)), "materials"};
+}
+
+// Each mesh of the scene, taken over from `before` where it is there.
+std::vector<std::shared_ptr<const GpuMesh>> upload_meshes(const Scene& scene,
+                                                          const GpuScene& before) {
+    const std::size_t max_texels = max_buffer_texels();
+    std::vector<std::shared_ptr<const GpuMesh>> meshes;
+    meshes.reserve(scene.meshes.size());
+    for (const Mesh& mesh : scene.meshes) {
+        const auto known = std::find_if(before.meshes.begin(), before.meshes.end(),
+                                        [&mesh](const auto& other) { return other->holds(mesh); });
+        meshes.push_back(
+            known != before.meshes.end() ? *known : std::make_shared<GpuMesh>(mesh, max_texels));
+    }
+    return meshes;
+}
+
+// Corners relative to the first one, which keeps them exact far from the origin.
+std::shared_ptr<const GpuMesh> upload_triangle(const Triangle& triangle) {
+    MeshData data;
+    data.positions = {glm::vec3(0.0f), glm::vec3(triangle.b - triangle.a),
+                      glm::vec3(triangle.c - triangle.a)};
+    data.triangles = {glm::uvec3(0, 1, 2)};
+    return std::make_shared<GpuMesh>(make_mesh("triangle", std::move(data)), max_buffer_texels());
+}
+
+// Fills in what depends on the kind of shape.
+struct ShapeDrawing {
+    const Scene& scene;
+    const Object& object;
+    const GpuScene& gpu;
+    DrawnObject& drawn;
+
+    void operator()(const MeshInstance& instance) const {
+        drawn.shape = gpu.meshes[instance.mesh];
+        const Bounds& bounds = gpu.meshes[instance.mesh]->bounds();
+        drawn.bounds =
+            world_bounds(drawn.scene_from_object, glm::dvec3(bounds.min), glm::dvec3(bounds.max));
+    }
+    void operator()(const Triangle& triangle) const {
+        drawn.shape = upload_triangle(triangle);
+        drawn.scene_from_object = drawn.scene_from_object * translate(triangle.a);
+        drawn.object_from_scene = translate(-triangle.a) * drawn.object_from_scene;
+        drawn.bounds = object_bounds(scene, object);
+    }
+    void operator()(const Plane& plane) const { drawn.shape = plane; }
+    template <typename FiniteShape>
+    void operator()(const FiniteShape& shape) const {
+        drawn.shape = shape;
+        drawn.bounds = object_bounds(scene, object);
+    }
+};
+
+DrawnObject drawn_object(const GpuScene& gpu, const Object& object) {
+    const auto object_from_scene = inverse(object.world_from_object);
+    if (!object_from_scene) throw Error("object " + object.name + ": its transform is singular");
+    DrawnObject drawn;
+    drawn.id = object.id;
+    drawn.mask = object.mask;
+    drawn.material = object.material;
+    drawn.scene_from_object = object.world_from_object;
+    drawn.object_from_scene = *object_from_scene;
+    std::visit(ShapeDrawing{*gpu.scene, object, gpu, drawn}, object.shape);
+    return drawn;
+}
+
+}  // namespace
+
+GpuScene upload_scene(std::shared_ptr<const Scene> scene, const GpuScene& before) {
+    GpuScene gpu;
+    gpu.scene = std::move(scene);
+    gpu.meshes = upload_meshes(*gpu.scene, before);
+    for (const Object& object : gpu.scene->objects) {
+        const auto* instance = std::get_if<MeshInstance>(&object.shape);
+        if (instance != nullptr && gpu.meshes[instance->mesh]->chunks().empty()) continue;
+        gpu.objects.push_back(drawn_object(gpu, object));
+    }
+    gpu.materials = upload_materials(*gpu.scene);
+    check_gl("uploading the scene");
+    return gpu;
+}
+
+GpuLights upload_lights(const std::vector<Light>& lights, const glm::dvec3& eye) {
+    std::vector<glm::vec4> texels;
+    for (const Light& light : lights) {
+        if (const auto* point = std::get_if<PointLight>(&light)) {
+            texels.emplace_back(glm::vec3(point->position - eye), 1.0f);
+            texels.emplace_back(point->colour, 0.0f);
+        } else if (const auto* sun = std::get_if<DirectionalLight>(&light)) {
+            texels.emplace_back(glm::vec3(-glm::normalize(sun->direction)), 0.0f);
+            texels.emplace_back(sun->colour, 0.0f);
+        }
+    }
+    GpuLights gpu;
+    gpu.count = static_cast<int>(lights.size());
+    gpu.texels = {GL_RGBA32F, sizeof(glm::vec4), std::as_bytes(std::span(texels)), "lights"};
+    return gpu;
+}
+
+}  // namespace raypick
