@@ -1,0 +1,119 @@
+#include "viewer/app/orbit_camera.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace raypick {
+
+namespace {
+
+glm::dvec3 rotated(const glm::dvec3& v, const glm::dvec3& unit_axis, double radians) {
+    // Rodrigues' formula.
+    const double c = std::cos(radians);
+    const double s = std::sin(radians);
+    return c * v + s * glm::cross(unit_axis, v) + (1.0 - c) * glm::dot(unit_axis, v) * unit_axis;
+}
+
+double radius_of(const Bounds& bounds) {
+    return 0.5 * glm::length(glm::dvec3(bounds.max) - glm::dvec3(bounds.min));
+}
+
+// Bounds of a point or a flat thing have no size to fit; give them one in proportion to where they
+// are.
+Bounds with_some_size(const Bounds& bounds, double least_radius) {
+    if (radius_of(bounds) > 0.0) return bounds;
+    Bounds grown = bounds;
+    grown.min -= glm::vec3(static_cast<float>(least_radius));
+    grown.max += glm::vec3(static_cast<float>(least_radius));
+    return grown;
+}
+
+}  // namespace
+
+OrbitCamera::OrbitCamera(const Camera& camera) : camera_(camera) {
+    const CameraFrame frame = camera_frame(camera);
+    const double length = glm::length(camera.up);
+    axis_ = length > 0.0 ? camera.up / length : frame.vy;
+}
+
+double OrbitCamera::pivot_distance() const {
+    return glm::distance(camera_.eye, camera_.at);
+}
+
+void OrbitCamera::fit_to_scene(const Bounds& bounds) {
+    camera_.near = near_for_bounds(camera_, bounds);
+    const double radius = bounds.empty() ? 0.0 : radius_of(bounds);
+    if (!(radius > 0.0)) return;
+    min_distance_ = 1e-5 * radius;
+    max_distance_ = 1e4 * radius;
+}
+
+void OrbitCamera::orbit(double right, double down) {
+    const double distance = pivot_distance();
+    const CameraFrame frame = camera_frame(camera_);
+    // A level right vector: it defines the azimuth also when looking straight along the axis.
+    const glm::dvec3 level = glm::normalize(frame.vx - glm::dot(frame.vx, axis_) * axis_);
+    const glm::dvec3 vx = rotated(level, axis_, -right);
+    const glm::dvec3 outwards = glm::cross(vx, axis_);
+    constexpr double kPole = std::numbers::pi / 2.0;
+    const double elevation = std::asin(std::clamp(glm::dot(frame.vz, axis_), -1.0, 1.0));
+    // Further than the pole would turn the picture upside down.
+    const double turned = std::clamp(elevation + down, -kPole, kPole);
+    const glm::dvec3 vz = std::cos(turned) * outwards + std::sin(turned) * axis_;
+    camera_.eye = camera_.at + distance * vz;
+    // Perpendicular to the view, so that the frame is defined at the poles, too.
+    camera_.up = glm::cross(vz, vx);
+}
+
+glm::dvec3 OrbitCamera::pivot_plane_point(ImageSize size, ImagePoint at) const {
+    const CameraFrame frame = camera_frame(camera_);
+    const double distance = pivot_distance();
+    const double height = 2.0 * distance * std::tan(0.5 * glm::radians(camera_.fovy));
+    const double width = height * size.aspect();
+    return camera_.at + width * (at.c / size.cols - 0.5) * frame.vx -
+           height * (at.r / size.rows - 0.5) * frame.vy;
+}
+
+void OrbitCamera::pan(ImageSize size, ImagePoint from, ImagePoint to) {
+    const glm::dvec3 offset = pivot_plane_point(size, from) - pivot_plane_point(size, to);
+    camera_.eye += offset;
+    camera_.at += offset;
+}
+
+void OrbitCamera::set_pivot_depth(double depth) {
+    const double wanted = std::clamp(depth, min_distance_, max_distance_);
+    camera_.at = camera_.eye - wanted * camera_frame(camera_).vz;
+}
+
+void OrbitCamera::zoom(ImageSize size, ImagePoint at, double factor) {
+    const double distance = pivot_distance();
+    const double wanted = std::clamp(factor * distance, min_distance_, max_distance_);
+    const glm::dvec3 fixed = pivot_plane_point(size, at);
+    camera_.eye = fixed + (wanted / distance) * (camera_.eye - fixed);
+    camera_.at = fixed + (wanted / distance) * (camera_.at - fixed);
+}
+
+void OrbitCamera::frame(const Bounds& bounds, ImageSize size) {
+    if (bounds.empty() || size.rows <= 0 || size.cols <= 0) return;
+    const glm::dvec3 direction = camera_.at - camera_.eye;
+    const Bounds box = with_some_size(bounds, 0.1 * pivot_distance());
+    const glm::dvec3 up = camera_frame(camera_).vy;
+    const Camera framed = frame_bounds(box, direction, up, camera_.fovy, size.aspect());
+    camera_.eye = framed.eye;
+    camera_.at = framed.at;
+    camera_.up = up;
+    camera_.near = framed.near;
+}
+
+void OrbitCamera::look_at(const glm::dvec3& point) {
+    const glm::dvec3 offset = point - camera_.at;
+    camera_.eye += offset;
+    camera_.at += offset;
+}
+
+}  // namespace raypick
