@@ -1,0 +1,366 @@
+#include "viewer/app/app.h"
+
+#include "viewer/app/panels.h"
+
+#include <fmt/format.h>
+#include <glad/gl.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <numbers>
+#include <utility>
+
+namespace raypick {
+
+namespace {
+
+// ImGui needs a few frames to answer an event: hover, press, lay out.
+constexpr int kSettlingFrames = 3;
+// Dragging over the view's whole height turns by half a turn.
+constexpr double kOrbitRadians = std::numbers::pi;
+
+double chosen_scale(double wanted, const Window& window) {
+    return std::clamp(wanted > 0.0 ? wanted : window.content_scale(), 0.5, 6.0);
+}
+
+}  // namespace
+
+App::App(const ViewOptions& options, Window& window, InputState& input)
+    : options_(options),
+      window_(window),
+      input_(input),
+      ui_scale_(chosen_scale(options.ui_scale, window)),
+      ui_(window, ui_scale_),
+      opener_(Window::wake),
+      saver_(Window::wake),
+      trace_(options.trace) {
+    settings_.depth = options.depth;
+    layout_ = lay_out(window_.metrics(), ui_scale_, panels_);
+    if (!options.file.empty()) open(options.file);
+}
+
+void App::run() {
+    int frames_due = kSettlingFrames;
+    while (!quit_ && !window_.close_wanted()) {
+        if (window_.wait(frames_due > 0 ? 0.0 : patience())) frames_due = kSettlingFrames;
+        if (working() || ui_.typing()) frames_due = std::max(frames_due, 1);
+        if (frames_due == 0) continue;
+        --frames_due;
+        step();
+    }
+    // What still runs is given up; nobody should have to watch it end.
+    window_.hide();
+}
+
+bool App::working() const {
+    return opener_.progress().has_value() || saver_.busy() || view_.busy();
+}
+
+double App::patience() const {
+    if (view_.awaits_first_picture()) return 0.01;
+    if (working()) return 0.1;
+    return ui_.typing() ? 0.3 : 60.0;  // a text cursor blinks
+}
+
+void App::step() {
+    take_results();
+    for (const InputAction& action : input_.take_actions()) {
+        std::visit([this](const auto& what) { apply(what); }, action);
+    }
+    layout_ = lay_out(window_.metrics(), ui_scale_, panels_);
+    view_.prepare(layout_.view.size, trace_ ? &settings_ : nullptr);
+    update_hover();
+    draw();
+    window_.set_title(title());
+    remember_screen();
+}
+
+void App::remember_screen() {
+    ScreenState screen;
+    screen.view = layout_.view;
+    screen.ui = {layout_.side_panel, layout_.status_bar};
+    if (load_card_) screen.ui.push_back(*load_card_);
+    screen.modal = !std::holds_alternative<std::monostate>(overlay_);
+    screen.typing = ui_.typing();
+    input_.set_screen(std::move(screen));
+}
+
+void App::open(const std::filesystem::path& file) {
+    opener_.open(file, options_.crease_degrees, next_object_id_);
+}
+
+void App::take_results() {
+    if (std::optional<OpenResult> result = opener_.take_result()) {
+        if (auto* document = std::get_if<Document>(&*result)) {
+            take(std::move(*document));
+        } else {
+            complain("This file can't be opened", std::get<OpenFailure>(*result).message);
+        }
+    }
+    if (const std::optional<SaveResult> result = saver_.take_result()) {
+        if (result->error.empty()) {
+            message_ = fmt::format("Saved {}", result->file.string());
+        } else {
+            complain("The picture can't be saved", result->error);
+        }
+    }
+}
+
+void App::take(Document document) {
+    try {
+        view_.set_scene(document.accel, first_camera(document.scene()));
+    } catch (const Error& error) {
+        complain("This scene can't be shown", error.what());
+        if (document_) view_.set_scene(document_->accel, view_.camera().camera());
+        return;
+    }
+    next_object_id_ = std::max(next_object_id_, document.scene().next_object_id);
+    selection_.clear();
+    hover_ = {};
+    message_.clear();
+    document_ = std::move(document);
+}
+
+Camera App::first_camera(const Scene& scene) {
+    const ImageSize view = layout_.view.size;
+    const ImageSize size = view.rows > 0 && view.cols > 0 ? view : options_.size;
+    // The camera that was asked for belongs to the file that was asked for.
+    const CameraOverride wanted = std::exchange(options_.camera, {});
+    try {
+        return choose_camera(scene, size, wanted);
+    } catch (const Error& error) {
+        complain("This camera can't be used", error.what());
+        return choose_camera(scene, size, {});
+    }
+}
+
+void App::complain(const std::string& title, const std::string& text) {
+    overlay_ = MessageBox{title, text};
+}
+
+void App::apply(const OrbitAction& action) {
+    view_.camera().orbit(kOrbitRadians * action.right, kOrbitRadians * action.down);
+}
+
+void App::apply(const PanAction& action) {
+    if (view_.shown()) view_.camera().pan(view_.shown()->size, action.from, action.to);
+}
+
+void App::apply(const ZoomAction& action) {
+    view_.zoom(action.steps, action.at);
+}
+
+void App::apply(const ClickAction& action) {
+    const std::optional<PixelPick> pick = view_.pick(action.pixel);
+    if (!pick) return;
+    selection_.click(*pick, action.add);
+    message_.clear();
+    if (!options_.print_picks) return;
+    std::puts(to_json(*pick).c_str());
+    std::fflush(stdout);
+}
+
+void App::apply(const OpenAction& action) {
+    open(action.file);
+}
+
+void App::apply(Command command) {
+    switch (command) {
+        case Command::frame_selected:
+            frame_selected();
+            break;
+        case Command::frame_all:
+            view_.frame_all();
+            break;
+        case Command::toggle_trace:
+            trace_ = !trace_;
+            break;
+        case Command::escape:
+            escape();
+            break;
+        case Command::toggle_help:
+            if (std::holds_alternative<HelpSheet>(overlay_)) {
+                overlay_ = std::monostate{};
+            } else if (std::holds_alternative<std::monostate>(overlay_)) {
+                overlay_ = HelpSheet{};
+            }
+            break;
+        case Command::toggle_panels:
+            panels_ = !panels_;
+            break;
+        case Command::open:
+            overlay_ = PathDialog{};
+            break;
+        case Command::save:
+            ask_for_picture_name();
+            break;
+        case Command::screenshot:
+            save_picture(free_picture_name("", picture_stem()));
+            break;
+        case Command::quit:
+            quit_ = true;
+            break;
+    }
+}
+
+void App::escape() {
+    if (!std::holds_alternative<std::monostate>(overlay_)) {
+        overlay_ = std::monostate{};
+    } else if (view_.trace_status().state == PreviewStatus::State::tracing) {
+        view_.cancel_trace();
+    } else {
+        selection_.clear();
+    }
+}
+
+void App::frame_selected() {
+    const Selection::Entry* primary = selection_.primary();
+    if (primary == nullptr || !primary->pick.pick) {
+        view_.frame_all();
+        return;
+    }
+    view_.frame_objects(selected_objects(), primary->pick.pick->point);
+}
+
+std::string App::picture_stem() const {
+    return document_ ? document_->file.stem().string() : std::string("raypick");
+}
+
+void App::ask_for_picture_name() {
+    if (!view_.shown()) return;
+    PathDialog dialog;
+    dialog.purpose = PathDialog::Purpose::save;
+    dialog.name = picture_stem() + ".png";
+    dialog.subject = fmt::format("The {} picture, {} x {} pixels.",
+                                 view_.shown()->traced ? "ray-traced" : "OpenGL",
+                                 view_.shown()->size.cols, view_.shown()->size.rows);
+    overlay_ = dialog;
+}
+
+void App::save_picture(const std::filesystem::path& file) {
+    if (!view_.shown() || saver_.busy()) return;
+    message_ = fmt::format("Saving {} ...", file.string());
+    saver_.save(view_.picture(), file);
+}
+
+void App::update_hover() {
+    const std::optional<Pixel> pixel = input_.hover();
+    if (pixel == hover_.pixel && view_.shown() == hover_.frame) return;
+    hover_ = {pixel, view_.shown(), pixel ? view_.pick(*pixel) : std::nullopt};
+}
+
+std::vector<ObjectId> App::selected_objects() const {
+    std::vector<ObjectId> objects;
+    for (const Selection::Entry& entry : selection_.entries())
+        objects.push_back(entry.object);
+    return objects;
+}
+
+void App::draw() {
+    const WindowMetrics& metrics = layout_.window;
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, metrics.framebuffer_cols, metrics.framebuffer_rows);
+    glClearColor(0.10f, 0.11f, 0.12f, 1.0f);
+    glClear(GL_COLOR_BUFFER_BIT);
+    const bool on_object = hover_.pick && hover_.pick->pick;
+    view_.present(layout_.view, metrics.framebuffer_rows, selected_objects(),
+                  on_object ? hover_.pick->pick->hit.object : kNoObject);
+    ui_.begin_frame();
+    draw_panels();
+    ui_.end_frame();
+    window_.swap();
+}
+
+void App::draw_panels() {
+    if (panels_) {
+        draw_side_panel();
+        draw_status_bar({hover_text(), message_.empty() ? view_text() : message_},
+                        layout_.status_bar);
+    }
+    draw_loading();
+    if (!document_ && !load_card_) draw_empty_hint(view_region());
+    draw_dialog();
+}
+
+void App::draw_side_panel() {
+    begin_side_panel(layout_.side_panel);
+    draw_scene_panel(document_ ? &*document_ : nullptr);
+    const std::optional<Command> command = draw_selection_panel(selection_);
+    RenderSettings edited = settings_;
+    const TracePanel panel{trace_, document_.has_value(), saver_.busy(), view_.trace_status()};
+    const std::optional<TraceRequest> request = draw_trace_panel(panel);
+    if (draw_trace_settings(edited)) settings_ = edited;
+    end_side_panel();
+    if (command) apply(*command);
+    if (request == TraceRequest::toggle) apply(Command::toggle_trace);
+    if (request == TraceRequest::cancel) view_.cancel_trace();
+    if (request == TraceRequest::save) apply(Command::save);
+}
+
+void App::draw_loading() {
+    load_card_.reset();
+    const std::optional<OpenProgress> progress = opener_.progress();
+    if (!progress) return;
+    const LoadCard card = draw_load_card(*progress, view_region(), !document_);
+    load_card_ = card.place;
+    if (card.cancelled) opener_.cancel();
+}
+
+void App::draw_dialog() {
+    const OverlayAnswer answer = draw_overlay(overlay_);
+    if (answer.name) {
+        const bool saving = std::get<PathDialog>(overlay_).purpose == PathDialog::Purpose::save;
+        overlay_ = std::monostate{};
+        if (saving) {
+            save_picture(*answer.name);
+        } else {
+            open(*answer.name);
+        }
+    } else if (answer.close) {
+        overlay_ = std::monostate{};
+    }
+}
+
+UiRegion App::view_region() const {
+    const WindowMetrics& window = layout_.window;
+    return {0.0, 0.0, window.window_width - layout_.side_panel.width,
+            window.window_height - layout_.status_bar.height};
+}
+
+std::string App::hover_text() const {
+    if (!hover_.pick) return "";
+    if (!hover_.pick->pick) return "background";
+    const Pick& pick = *hover_.pick->pick;
+    return pick.material.empty() ? pick.object
+                                 : fmt::format("{}  ({})", pick.object, pick.material);
+}
+
+std::string App::view_text() const {
+    if (!view_.shown()) return "F1 help";
+    return fmt::format("{}   {} x {}   F1 help", view_.shown()->traced ? "ray traced" : "OpenGL",
+                       view_.shown()->size.cols, view_.shown()->size.rows);
+}
+
+std::string App::title() const {
+    std::string title = "raypick";
+    if (document_) title += " - " + document_->file.filename().string();
+    if (const std::optional<OpenProgress> progress = opener_.progress()) {
+        return title + " - opening " + progress->file.filename().string();
+    }
+    if (std::holds_alternative<MessageBox>(overlay_)) return title + " - error";
+    switch (view_.trace_status().state) {
+        case PreviewStatus::State::off:
+            return title;
+        case PreviewStatus::State::tracing:
+            return title + " - tracing";
+        case PreviewStatus::State::finished:
+            return title + " - traced";
+        case PreviewStatus::State::cancelled:
+            return title + " - stopped";
+        case PreviewStatus::State::failed:
+            return title + " - failed";
+    }
+    return title;
+}
+
+}  // namespace raypick

@@ -1,0 +1,44 @@
+// Dialogs over the window: one at a time, the rest of the window waits.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+
+namespace raypick {
+
+// Keys and mouse on one page.
+struct HelpSheet {};
+
+// Something the person must know before going on.
+struct MessageBox {
+    std::string title;
+    std::string text;
+};
+
+// Asks for a file's name.
+struct PathDialog {
+    enum class Purpose { open, save };
+
+    Purpose purpose = Purpose::open;
+    std::string name;
+    std::string subject;  // of a picture: what it shows
+    std::string complaint;
+    bool fresh = true;  // not drawn yet
+};
+
+using Overlay = std::variant<std::monostate, HelpSheet, MessageBox, PathDialog>;
+
+struct OverlayAnswer {
+    bool close = false;
+    std::optional<std::string> name;  // the path dialog was confirmed with it
+};
+
+// Draws what is open, if anything. Call in every frame, so that what was closed goes away.
+OverlayAnswer draw_overlay(Overlay& overlay);
+
+// "" if a picture can be written to that name, else why not.
+std::string save_complaint(const std::string& name);
+
+}  // namespace raypick

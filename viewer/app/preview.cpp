@@ -1,0 +1,103 @@
+#include "viewer/app/preview.h"
+
+#include <exception>
+#include <utility>
+
+namespace raypick {
+
+namespace {
+
+// Copying and uploading a frame takes time from the tracer.
+constexpr std::chrono::milliseconds kUploadInterval{80};
+
+}  // namespace
+
+void Preview::want(const PreviewView& view) {
+    const bool have_job = job_ || !error_.empty();
+    if (have_job && job_view_ == view) return;
+    const bool may_replace = !job_ || job_shown() || job_ended_ || job_view_.accel != view.accel;
+    if (may_replace) start(view);
+}
+
+void Preview::start(const PreviewView& view) {
+    retire();
+    error_.clear();
+    job_view_ = view;
+    try {
+        job_ = std::make_shared<RenderJob>(view.accel, view.camera, view.size, view.settings);
+    } catch (const std::exception& error) {
+        error_ = error.what();
+    }
+}
+
+void Preview::cancel() {
+    if (job_) job_->cancel();
+}
+
+void Preview::close() {
+    retire();
+    error_.clear();
+    shown_.reset();
+    shown_job_.reset();
+    image_ = {};
+    job_view_ = {};
+}
+
+void Preview::retire() {
+    if (job_) {
+        job_->cancel();
+        retired_.push_back(std::move(job_));
+    }
+    version_ = 0;
+    job_ended_ = false;
+}
+
+void Preview::collect_ended() {
+    // Joining a job whose work has ended takes no time; another one would hold up the window.
+    std::erase_if(retired_, [](const auto& job) { return job->progress().finished; });
+}
+
+void Preview::update(Presenter& presenter, bool at_once) {
+    collect_ended();
+    if (!job_) return;
+    // Asked before the snapshot: an ended job's snapshot is its last one.
+    const bool ended = job_->progress().finished;
+    const bool due =
+        at_once || !job_shown() || ended || Clock::now() - uploaded_ >= kUploadInterval;
+    if (due && job_->snapshot(image_, version_)) {
+        presenter.upload(image_);
+        uploaded_ = Clock::now();
+        shown_ = job_view_;
+        shown_job_ = job_;
+    }
+    if (!ended || job_ended_) return;
+    job_ended_ = true;
+    try {
+        job_->wait();
+    } catch (const std::exception& error) {
+        error_ = error.what();
+    }
+}
+
+Pixel Preview::shown_pixel(Pixel pixel) const {
+    return shown_job_ ? shown_job_->shown_pixel(pixel) : pixel;
+}
+
+PreviewStatus Preview::status() const {
+    PreviewStatus status;
+    status.error = error_;
+    if (job_) {
+        status.progress = job_->progress();
+        status.state = !status.progress.finished   ? PreviewStatus::State::tracing
+                       : status.progress.cancelled ? PreviewStatus::State::cancelled
+                                                   : PreviewStatus::State::finished;
+    }
+    if (!error_.empty()) status.state = PreviewStatus::State::failed;
+    return status;
+}
+
+bool Preview::busy() const {
+    return (job_ && !job_ended_) || !retired_.empty();
+}
+
+}  // namespace raypick

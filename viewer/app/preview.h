@@ -1,0 +1,80 @@
+// The ray-traced preview: keeps a render job on the view that is wanted and its newest picture on
+// the GPU. Never waits for the tracer.
+#pragma once
+
+#include "tracer/render/render_job.h"
+#include "viewer/raster/presenter.h"
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace raypick {
+
+// What a frame is traced of. Two equal ones give the same picture.
+struct PreviewView {
+    std::shared_ptr<const Accel> accel;
+    Camera camera;
+    ImageSize size;
+    RenderSettings settings;
+
+    friend bool operator==(const PreviewView&, const PreviewView&) = default;
+};
+
+struct PreviewStatus {
+    enum class State { off, tracing, finished, cancelled, failed };
+
+    State state = State::off;
+    RenderProgress progress;
+    std::string error;  // if failed
+};
+
+class Preview {
+public:
+    // Asks for a picture of this view. A running job of another view is replaced as soon as its
+    // first coarse picture is there, so that a moving camera is shown, too.
+    void want(const PreviewView& view);
+    // Ends the running job; its picture so far stays.
+    void cancel();
+    // Ends the job and forgets its picture.
+    void close();
+    // Takes over what the job has by now and uploads it if it is new. `at_once`: even if the last
+    // upload was just before.
+    void update(Presenter& presenter, bool at_once = false);
+
+    // The picture on the GPU and the view that it shows; nullptr if there is none.
+    [[nodiscard]] const Image* image() const { return shown_ ? &image_ : nullptr; }
+    [[nodiscard]] const PreviewView* shown() const { return shown_ ? &*shown_ : nullptr; }
+    // The pixel whose sample is shown at `pixel`.
+    [[nodiscard]] Pixel shown_pixel(Pixel pixel) const;
+
+    [[nodiscard]] PreviewStatus status() const;
+    // There is something to come, or a thread to wait for.
+    [[nodiscard]] bool busy() const;
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    void start(const PreviewView& view);
+    void retire();
+    void collect_ended();
+
+    [[nodiscard]] bool job_shown() const { return job_ && job_ == shown_job_; }
+
+    std::shared_ptr<RenderJob> job_;
+    PreviewView job_view_;
+    bool job_ended_ = false;  // and wait() has been asked for its error
+    std::uint64_t version_ = 0;
+    std::string error_;
+    std::vector<std::shared_ptr<RenderJob>> retired_;  // cancelled, their threads still ending
+
+    // The picture on the GPU: of job_, or of the one before as long as job_ has none.
+    Image image_;
+    std::optional<PreviewView> shown_;
+    std::shared_ptr<RenderJob> shown_job_;
+    Clock::time_point uploaded_;
+};
+
+}  // namespace raypick

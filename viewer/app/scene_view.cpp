@@ -1,0 +1,134 @@
+#include "viewer/app/scene_view.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace raypick {
+
+namespace {
+
+constexpr double kZoomStep = 0.88;  // of the distance that a wheel step leaves
+
+// Depth along the view axis of what is under the point, as far as zooming should care: a floor's
+// horizon does not count for more than the far end of the scene.
+double depth_under(const Accel& accel, const Camera& camera, ImageSize size, ImagePoint at,
+                   double background_depth) {
+    const Ray ray = camera_ray(camera, size, at);
+    const std::optional<Hit> hit = accel.intersect(ray);
+    if (!hit) return background_depth;
+    const glm::dvec3 forward = -camera_frame(camera).vz;
+    const double depth = hit->t * glm::dot(glm::dvec3(ray.direction), forward);
+    const Bounds& bounds = accel.bounds();
+    if (bounds.empty()) return depth;
+    const double radius = 0.5 * glm::length(glm::dvec3(bounds.extent()));
+    const double far_end = glm::distance(camera.eye, glm::dvec3(bounds.centre())) + radius;
+    return std::min(depth, far_end);
+}
+
+}  // namespace
+
+void SceneView::set_scene(std::shared_ptr<const Accel> accel, const Camera& camera) {
+    rasterizer_.set_scene(accel->shared_scene());
+    accel_ = std::move(accel);
+    camera_ = OrbitCamera(camera);
+    preview_.close();
+    rasterised_.reset();
+    shown_.reset();
+}
+
+void SceneView::zoom(double steps, std::optional<ImagePoint> at) {
+    if (!shown_) return;
+    const ImageSize size = shown_->size;
+    const ImagePoint point = at.value_or(ImagePoint{0.5 * size.rows, 0.5 * size.cols});
+    if (steps > 0.0) {
+        camera_.set_pivot_depth(
+            depth_under(*accel_, camera_.camera(), size, point, camera_.pivot_distance()));
+    }
+    camera_.zoom(size, point, std::pow(kZoomStep, steps));
+}
+
+void SceneView::frame_all() {
+    if (shown_) camera_.frame(accel_->bounds(), shown_->size);
+}
+
+void SceneView::frame_objects(std::span<const ObjectId> objects, const glm::dvec3& fallback_point) {
+    if (!shown_) return;
+    const Scene& scene = accel_->scene();
+    Bounds bounds;
+    for (const ObjectId id : objects) {
+        if (const Object* object = find_object(scene, id)) {
+            bounds.extend(object_bounds(scene, *object));
+        }
+    }
+    if (bounds.empty()) {
+        camera_.look_at(fallback_point - scene.origin);
+    } else {
+        camera_.frame(bounds, shown_->size);
+    }
+}
+
+void SceneView::prepare(ImageSize size, const RenderSettings* trace) {
+    if (!accel_ || size.rows <= 0 || size.cols <= 0) {
+        shown_.reset();
+        return;
+    }
+    camera_.fit_to_scene(accel_->bounds());
+    if (trace != nullptr) {
+        preview_.want({accel_, camera_.camera(), size, *trace});
+        preview_.update(presenter_);
+    } else {
+        preview_.close();
+    }
+    if (shows_trace(size)) {
+        shown_ = ShownFrame{accel_, preview_.shown()->camera, size, true};
+    } else {
+        rasterise(size);
+        shown_ = rasterised_;
+    }
+}
+
+bool SceneView::shows_trace(ImageSize size) const {
+    const PreviewView* traced = preview_.shown();
+    return traced != nullptr && traced->accel == accel_ && traced->size == size;
+}
+
+void SceneView::rasterise(ImageSize size) {
+    const ShownFrame wanted{accel_, camera_.camera(), size, false};
+    if (rasterised_ == wanted) return;
+    rasterizer_.draw(wanted.camera, size);
+    rasterised_ = wanted;
+}
+
+void SceneView::present(const ViewRect& view, int framebuffer_rows,
+                        std::span<const ObjectId> selected, ObjectId hovered) {
+    if (!shown_) return;
+    if (shown_->traced) {
+        presenter_.present(presenter_.colour_texture(), presenter_.object_texture(), view,
+                           framebuffer_rows, selected, hovered);
+    } else {
+        presenter_.present(rasterizer_.colour_texture(), rasterizer_.object_texture(), view,
+                           framebuffer_rows, selected, hovered);
+    }
+}
+
+std::optional<PixelPick> SceneView::pick(Pixel pixel) const {
+    if (!shown_ || !shown_->size.contains(pixel)) return std::nullopt;
+    const Pixel sampled = shown_->traced ? preview_.shown_pixel(pixel) : pixel;
+    return PixelPick{sampled, pick_pixel(*shown_->accel, shown_->camera, shown_->size, sampled)};
+}
+
+Image SceneView::picture() {
+    if (!shown_) return {};
+    if (!shown_->traced) return rasterizer_.read_image();
+    preview_.update(presenter_, true);
+    return *preview_.image();
+}
+
+bool SceneView::awaits_first_picture() const {
+    return preview_.busy() && !(shown_ && shown_->traced);
+}
+
+}  // namespace raypick

@@ -1,0 +1,72 @@
+// The scene on the screen: rasterised, or traced in place. Knows what the last frame showed, so
+// that a pick sees the same.
+#pragma once
+
+#include "picking/pick.h"
+#include "viewer/app/orbit_camera.h"
+#include "viewer/app/preview.h"
+#include "viewer/raster/presenter.h"
+#include "viewer/raster/rasterizer.h"
+
+#include <memory>
+#include <optional>
+#include <span>
+
+namespace raypick {
+
+// What a frame showed.
+struct ShownFrame {
+    std::shared_ptr<const Accel> accel;
+    Camera camera;
+    ImageSize size;
+    bool traced = false;
+
+    friend bool operator==(const ShownFrame&, const ShownFrame&) = default;
+};
+
+// Needs a current OpenGL 3.3 core context, the same one in every call.
+class SceneView {
+public:
+    // Shows another scene from this camera.
+    void set_scene(std::shared_ptr<const Accel> accel, const Camera& camera);
+    [[nodiscard]] bool empty() const { return accel_ == nullptr; }
+
+    [[nodiscard]] OrbitCamera& camera() { return camera_; }
+    // Wheel steps towards what is shown at a point of the view (its centre: nothing).
+    void zoom(double steps, std::optional<ImagePoint> at);
+    // Fits everything, or these objects, into the view.
+    void frame_all();
+    void frame_objects(std::span<const ObjectId> objects, const glm::dvec3& fallback_point);
+
+    // Makes the frame that present() shows: traced if `trace` says how and a picture is there.
+    void prepare(ImageSize size, const RenderSettings* trace);
+    void present(const ViewRect& view, int framebuffer_rows, std::span<const ObjectId> selected,
+                 ObjectId hovered);
+
+    // What the last prepared frame shows; nothing if the view is empty.
+    [[nodiscard]] const std::optional<ShownFrame>& shown() const { return shown_; }
+    // What is under a pixel of it: the pick of the pixel whose ray is shown there.
+    [[nodiscard]] std::optional<PixelPick> pick(Pixel pixel) const;
+    // The shown picture itself.
+    [[nodiscard]] Image picture();
+
+    [[nodiscard]] PreviewStatus trace_status() const { return preview_.status(); }
+    void cancel_trace() { preview_.cancel(); }
+    // A traced picture is on its way.
+    [[nodiscard]] bool busy() const { return preview_.busy(); }
+    [[nodiscard]] bool awaits_first_picture() const;
+
+private:
+    void rasterise(ImageSize size);
+    [[nodiscard]] bool shows_trace(ImageSize size) const;
+
+    std::shared_ptr<const Accel> accel_;
+    OrbitCamera camera_;
+    Rasterizer rasterizer_;
+    Presenter presenter_;
+    Preview preview_;
+    std::optional<ShownFrame> rasterised_;  // what the rasteriser's buffers hold
+    std::optional<ShownFrame> shown_;
+};
+
+}  // namespace raypick
