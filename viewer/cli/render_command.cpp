@@ -1,0 +1,143 @@
+#include "tracer/render/render_job.h"
+#include "viewer/cli/commands.h"
+#include "viewer/cli/exit_code.h"
+#include "viewer/cli/interrupt.h"
+#include "viewer/cli/open_scene.h"
+#include "viewer/cli/progress_bar.h"
+#include "viewer/cli/render_output.h"
+#include "viewer/cli/scene_report.h"
+#include "viewer/cli/standard_output.h"
+#include "viewer/headless/offscreen_context.h"
+#include "viewer/raster/rasterizer.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <thread>
+
+namespace raypick {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Frame {
+    Image image;
+    RayCounts rays;              // none if drawn by OpenGL
+    double build_seconds = 0.0;  // of the tree that rays run on
+    double seconds = 0.0;        // of the frame
+    std::uint64_t accel_bytes = 0;
+};
+
+void show_progress(const RenderJob& job, ProgressBar& bar) {
+    for (RenderProgress progress = job.progress(); !progress.finished; progress = job.progress()) {
+        const double rays = static_cast<double>(progress.rays.total());
+        const double mega_rays_per_second =
+            progress.seconds > 0.0 ? 1e-6 * rays / progress.seconds : 0.0;
+        bar.show("tracing", progress.fraction,
+                 fmt::format("{:.1f} s, {:.2f} Mrays/s", progress.seconds, mega_rays_per_second));
+        std::this_thread::sleep_for(std::chrono::milliseconds(40));
+    }
+    bar.clear();
+}
+
+Frame traced(const RenderCommand& command, const OpenedScene& opened, const Camera& camera,
+             const Interrupt& interrupt) {
+    const BuiltAccel built =
+        build_accel(opened, command.scene.verbose, command.settings.threads, interrupt.token());
+    constexpr bool kCoarseFirst = false;  // nobody looks at it before it is done
+    RenderJob job(built.accel, camera, command.size, command.settings, kCoarseFirst);
+    const std::stop_callback cancel(interrupt.token(), [&job] { job.cancel(); });
+    ProgressBar bar;
+    if (bar.visible()) show_progress(job, bar);
+    job.wait();
+    interrupt.check();
+
+    Frame frame;
+    std::uint64_t nothing_known = 0;
+    job.snapshot(frame.image, nothing_known);
+    const RenderProgress progress = job.progress();
+    frame.rays = progress.rays;
+    frame.build_seconds = built.build_seconds;
+    frame.seconds = progress.seconds;
+    frame.accel_bytes = built.accel->stats().bytes;
+    return frame;
+}
+
+Frame rasterized(const RenderCommand& command, const OpenedScene& opened, const Camera& camera) {
+    const OffscreenContext context;
+    if (command.scene.verbose) print_message("OpenGL: " + context.description());
+    const auto start = Clock::now();
+    Rasterizer rasterizer;
+    rasterizer.set_scene(opened.scene);
+    rasterizer.draw(camera, command.size);
+    Frame frame;
+    frame.image = rasterizer.read_image();
+    frame.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    return frame;
+}
+
+std::uint64_t image_bytes(const Image& image) {
+    const auto bytes = [](const auto& channel) { return channel.size() * sizeof(channel[0]); };
+    return bytes(image.colour) + bytes(image.depth) + bytes(image.normal) + bytes(image.object) +
+           bytes(image.primitive);
+}
+
+Json stats_json(const RenderCommand& command, const OpenedScene& opened, const Frame& frame) {
+    Json json;
+    json["seconds"] = {{"load", opened.load_seconds},
+                       {"build", frame.build_seconds},
+                       {"trace", command.raster ? 0.0 : frame.seconds},
+                       {"raster", command.raster ? frame.seconds : 0.0}};
+    json["rays"] = {{"eye", frame.rays.eye},
+                    {"eye_hits", frame.rays.eye_hits},
+                    {"reflection", frame.rays.reflection},
+                    {"refraction", frame.rays.refraction},
+                    {"shadow", frame.rays.shadow},
+                    {"shadow_blocked", frame.rays.shadow_blocked}};
+    add_counts(json, *opened.scene);
+    json["memory_bytes"] = {{"meshes", mesh_bytes(*opened.scene)},
+                            {"accel", frame.accel_bytes},
+                            {"image", image_bytes(frame.image)},
+                            {"peak", peak_memory_bytes()}};
+    json["resolution"] = {command.size.cols, command.size.rows};
+    return json;
+}
+
+Frame make_frame(const RenderCommand& command, const OpenedScene& opened,
+                 const Interrupt& interrupt) {
+    const Camera camera = camera_for(*opened.scene, command.size, command.camera);
+    return command.raster ? rasterized(command, opened, camera)
+                          : traced(command, opened, camera, interrupt);
+}
+
+void render_to(const RenderOutput& output, const RenderCommand& command,
+               const Interrupt& interrupt) {
+    const OpenedScene opened = open_scene(command.scene, interrupt.token());
+    const Frame frame = make_frame(command, opened, interrupt);
+    interrupt.check();
+    output.write(frame.image);
+    if (command.scene.verbose) {
+        print_message(
+            fmt::format("wrote {} after {:.3f} s for the frame", command.output, frame.seconds));
+    }
+    if (!command.json_stats) return;
+    StandardOutput standard_output;
+    standard_output.write(dump(stats_json(command, opened, frame)) + "\n");
+    standard_output.flush();
+}
+
+}  // namespace
+
+int run_render(const RenderCommand& command) {
+    const RenderOutput output(command.output);
+    const Interrupt interrupt;
+    try {
+        render_to(output, command, interrupt);
+    } catch (const Cancelled&) {
+        interrupt.check();
+        throw;
+    }
+    return kExitOk;
+}
+
+}  // namespace raypick

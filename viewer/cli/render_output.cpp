@@ -1,0 +1,50 @@
+#include "viewer/cli/render_output.h"
+
+#include "tracer/render/image_files.h"
+#include "viewer/cli/exit_code.h"
+#include "viewer/cli/standard_output.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace raypick {
+namespace {
+
+void check_writable(const std::filesystem::path& file) {
+    namespace fs = std::filesystem;
+    const auto fail = [&file](const std::string& why) { throw FileError(file.string(), why); };
+    std::error_code ignored;
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    if (!fs::is_directory(folder, ignored)) {
+        fail("can't be written: there is no folder " + folder.string());
+    }
+    if (fs::is_directory(file, ignored)) fail("can't be written: it is a folder");
+    if (fs::exists(file, ignored) && ::access(file.c_str(), W_OK) != 0) {
+        fail(std::string("can't be written: ") + std::strerror(errno));
+    }
+    if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+        fail("can't be written: folder " + folder.string() + ": " + std::strerror(errno));
+    }
+}
+
+}  // namespace
+
+RenderOutput::RenderOutput(const std::string& output)
+    : file_(output), to_standard_output_(output == "-") {
+    if (to_standard_output_) return;
+    const std::string problem = unsupported_image_name(file_);
+    if (!problem.empty()) throw UsageError("--output=" + output + ": " + problem);
+    check_writable(file_);
+}
+
+void RenderOutput::write(const Image& image) const {
+    if (!to_standard_output_) return write_image(image, file_);
+    const std::vector<std::uint8_t> bytes = png_bytes(image);
+    StandardOutput standard_output;
+    standard_output.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    standard_output.flush();
+}
+
+}  // namespace raypick
