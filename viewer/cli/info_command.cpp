@@ -9,20 +9,16 @@
 namespace raypick {
 namespace {
 
-Json colour_json(const glm::vec3& colour) {
-    return Json::array({colour.r, colour.g, colour.b});
-}
-
 Json material_json(const Material& material) {
     return {{"name", material.name},
-            {"ambient", colour_json(material.ambient)},
-            {"diffuse", colour_json(material.diffuse)},
-            {"specular", colour_json(material.specular)},
-            {"shininess", material.shininess},
-            {"emissive", colour_json(material.emissive)},
-            {"reflect", colour_json(material.reflect)},
-            {"transmit", colour_json(material.transmit)},
-            {"ior", material.ior}};
+            {"ambient", vector_json(material.ambient)},
+            {"diffuse", vector_json(material.diffuse)},
+            {"specular", vector_json(material.specular)},
+            {"shininess", shortest_decimal(material.shininess)},
+            {"emissive", vector_json(material.emissive)},
+            {"reflect", vector_json(material.reflect)},
+            {"transmit", vector_json(material.transmit)},
+            {"ior", shortest_decimal(material.ior)}};
 }
 
 Json light_json(const Scene& scene, const Light& light) {
@@ -30,13 +26,13 @@ Json light_json(const Scene& scene, const Light& light) {
         return {{"name", point->name},
                 {"type", "point"},
                 {"position", vector_json(scene.origin + point->position)},
-                {"colour", colour_json(point->colour)}};
+                {"colour", vector_json(point->colour)}};
     }
     const auto& directional = std::get<DirectionalLight>(light);
     return {{"name", directional.name},
             {"type", "directional"},
             {"direction", vector_json(directional.direction)},
-            {"colour", colour_json(directional.colour)}};
+            {"colour", vector_json(directional.colour)}};
 }
 
 Json camera_json(const Scene& scene, const NamedCamera& named) {
@@ -80,7 +76,7 @@ Json object_json(const Scene& scene, const Object& object) {
             {"path", object.path},
             {"shape", std::visit(ShapeName{}, object.shape)},
             {"primitives", primitive_count(scene, object)},
-            {"bounds", bounds_json(scene, object_bounds(scene, object))},
+            {"bounds", extent_json(file_extent(scene, object))},
             {"parts", parts_json(scene, object)}};
 }
 
@@ -98,7 +94,7 @@ Json info_json(const InfoCommand& command, const OpenedScene& opened, const Buil
     Json json;
     json["file"] = command.scene.file.string();
     add_counts(json, scene);
-    json["bounds"] = bounds_json(scene, scene_bounds(scene));
+    json["bounds"] = extent_json(file_extent(scene));
     json["origin"] = vector_json(scene.origin);
     json["materials"] = array_json(scene.materials, material_json);
     json["lights"] =
@@ -138,10 +134,10 @@ std::string printable(std::string text) {
     return text;
 }
 
-std::string bounds_text(const Scene& scene, const Bounds& bounds) {
-    if (bounds.empty()) return "none";
-    const glm::dvec3 min = scene.origin + glm::dvec3(bounds.min);
-    const glm::dvec3 max = scene.origin + glm::dvec3(bounds.max);
+std::string extent_text(const std::optional<ObjectExtent>& extent) {
+    if (!extent) return "none";
+    const glm::dvec3& min = extent->min;
+    const glm::dvec3& max = extent->max;
     return fmt::format("({:.9g}, {:.9g}, {:.9g}) to ({:.9g}, {:.9g}, {:.9g})", min.x, min.y, min.z,
                        max.x, max.y, max.z);
 }
@@ -189,7 +185,7 @@ std::string summary_text(const InfoCommand& command, const OpenedScene& opened,
     text += row("lights", counted_names_of(scene.lights, light_name));
     text += row("cameras",
                 counted_names_of(scene.cameras, [](const NamedCamera& c) { return c.name; }));
-    text += row("bounds", bounds_text(scene, scene_bounds(scene)));
+    text += row("bounds", extent_text(file_extent(scene)));
     text += row("time", fmt::format("load {:.3f} s, build {:.3f} s", opened.load_seconds,
                                     built.build_seconds));
     text += row("memory", fmt::format("meshes {}, tree {}, peak {}", megabytes(mesh_bytes(scene)),
@@ -201,7 +197,7 @@ std::string object_text(const Scene& scene, const Object& object) {
     std::string text =
         fmt::format("{:>6}  {:<28} {:<9} {:>10}  {:<28} {}\n", object.id, printable(object.name),
                     std::visit(ShapeName{}, object.shape), grouped(primitive_count(scene, object)),
-                    printable(object.path), bounds_text(scene, object_bounds(scene, object)));
+                    printable(object.path), extent_text(file_extent(scene, object)));
     for (const Json& part : parts_json(scene, object)) {
         const std::string name = part["material"];
         text += fmt::format("{:>48}{:>10}  material {}\n", "",
@@ -226,7 +222,7 @@ int run_info(const InfoCommand& command) {
     const BuiltAccel built = build_accel(opened, command.scene.verbose);
     StandardOutput output;
     if (command.json) {
-        output.write(dump(info_json(command, opened, built), 2) + "\n");
+        output.write(dump(info_json(command, opened, built)) + "\n");
     } else {
         output.write(summary_text(command, opened, built));
         if (command.objects) output.write(objects_text(*opened.scene));

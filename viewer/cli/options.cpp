@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 
 namespace raypick {
 namespace {
@@ -40,9 +41,18 @@ int whole_number_in(const std::string& option, const std::string& text, int low,
     return *number;
 }
 
+// Of places that a person may name: rays are traced in float, which ends at 3.4e38.
+constexpr double kMostCoordinate = 1e30;
+
+template <std::size_t N>
+bool all_moderate(const std::array<double, N>& numbers) {
+    return std::all_of(numbers.begin(), numbers.end(),
+                       [](double number) { return std::abs(number) <= kMostCoordinate; });
+}
+
 glm::dvec3 point_of(const std::string& option, const std::string& text) {
     const auto xyz = parse_doubles<3>(text, Separator::comma);
-    if (!xyz) refuse(option, "X,Y,Z", text);
+    if (!xyz || !all_moderate(*xyz)) refuse(option, "X,Y,Z (numbers up to 1e30)", text);
     return {(*xyz)[0], (*xyz)[1], (*xyz)[2]};
 }
 
@@ -65,7 +75,7 @@ FileRay ray_of(const std::string& text) {
     const auto numbers = parse_doubles<6>(text, Separator::comma);
     if (!numbers) refuse("--ray", "OX,OY,OZ,DX,DY,DZ or -", text);
     const std::optional<FileRay> ray = file_ray(*numbers);
-    if (!ray) refuse("--ray", "a direction DX,DY,DZ other than 0,0,0", text);
+    if (!ray) refuse("--ray", "numbers up to 1e30 and a direction other than 0,0,0", text);
     return *ray;
 }
 
@@ -134,6 +144,12 @@ void add_threads(CLI::App& app, int& threads) {
               });
 }
 
+void add_off_switch(CLI::App& app, const std::string& name, const std::string& description,
+                    bool& setting) {
+    app.add_flag_callback(
+        name, [&setting] { setting = false; }, description);
+}
+
 void add_scene(CLI::App& app, SceneOptions& scene) {
     app.add_option("FILE", scene.file, "A scene or a model: JSON, OBJ, glTF, GLB, PLY, STL")
         ->required()
@@ -141,16 +157,47 @@ void add_scene(CLI::App& app, SceneOptions& scene) {
     add_crease(app, scene.crease_degrees);
 }
 
-// Prints options as --NAME=TYPE.
+// Text in lines of at most `width` characters, broken at blanks.
+std::string wrapped(const std::string& text, std::size_t width) {
+    std::istringstream words(text);
+    std::string result;
+    std::size_t column = 0;
+    for (std::string word; words >> word;) {
+        const bool fits = column + 1 + word.size() <= width;
+        if (!result.empty()) result += fits ? ' ' : '\n';
+        column = fits && !result.empty() ? column + 1 + word.size() : word.size();
+        result += word;
+    }
+    return result;
+}
+
+// Prints options as --NAME=TYPE, and everything within 80 columns.
 class HelpFormatter : public CLI::Formatter {
 public:
-    HelpFormatter() { column_width(34); }
+    HelpFormatter() {
+        column_width(kNameColumns);
+        label("SUBCOMMAND", "COMMAND");
+        label("Positionals", "Arguments");
+    }
 
     std::string make_option_opts(const CLI::Option* option) const override {
         const std::string type = option->get_type_name();
         if (option->get_positional() || type.empty()) return "";
         return "=" + type;
     }
+
+    std::string make_option_desc(const CLI::Option* option) const override {
+        return wrapped(option->get_description(), kLineColumns - kNameColumns);
+    }
+
+    std::string make_footer(const CLI::App* app) const override {
+        return app->get_footer().empty() ? ""
+                                         : '\n' + wrapped(app->get_footer(), kLineColumns) + '\n';
+    }
+
+private:
+    static constexpr std::size_t kLineColumns = 80;
+    static constexpr std::size_t kNameColumns = 30;
 };
 
 // The one table of options.
@@ -164,16 +211,15 @@ public:
         app_.add_flag("--verbose", verbose_,
                       "Say on standard error what is done and how long it takes");
         app_.require_subcommand(1);
-        app_.get_formatter()->label("SUBCOMMAND", "COMMAND");
-        app_.get_formatter()->label("Subcommands", "Commands");
-        app_.footer(
-            "`raypick FILE` is `raypick view FILE`. `raypick COMMAND --help` lists a command's "
-            "options.\nExit codes: 0 done, 1 failed, 2 wrong usage, 77 no OpenGL, 130 or 143 "
-            "interrupted.");
         add_view();
         add_pick();
         add_render();
         add_info();
+        // After the commands, which would inherit it.
+        app_.footer(
+            "`raypick FILE` is `raypick view FILE`. `raypick COMMAND --help` lists a "
+            "command's options. Exit codes: 0 done, 1 failed, 2 wrong usage, 77 no OpenGL, "
+            "130 or 143 interrupted.");
     }
 
     CLI::App& app() { return app_; }
@@ -191,6 +237,7 @@ private:
     CLI::App& add_command(const std::string& name, const std::string& description) {
         CLI::App& app = *app_.add_subcommand(name, description);
         app.fallthrough();  // --verbose after the command's name
+        app.group("Commands");
         return app;
     }
 
@@ -274,11 +321,11 @@ void Table::add_render() {
     add_resolution(app, "Size of the image [1280,720]", render_.size);
     app.add_flag("--raster", render_.raster, "Draw by OpenGL, off screen, instead of tracing");
     add_depth(app, render_.settings.depth);
-    app.add_flag("!--no-shadows", render_.settings.shadows, "Leave out shadows");
-    app.add_flag("!--no-reflections", render_.settings.reflections, "Leave out mirror images");
-    app.add_flag("!--no-refractions", render_.settings.refractions,
-                 "Leave out what is seen through "
-                 "glass");
+    add_off_switch(app, "--no-shadows", "Leave out shadows", render_.settings.shadows);
+    add_off_switch(app, "--no-reflections", "Leave out mirror images",
+                   render_.settings.reflections);
+    add_off_switch(app, "--no-refractions", "Leave out what is seen through glass",
+                   render_.settings.refractions);
     add_threads(app, render_.settings.threads);
     add_value(app, "--stats", "json", "Print times, counts of rays and memory on standard output",
               [this](const std::string& text) {
@@ -355,7 +402,7 @@ std::optional<FileRay> file_ray(const std::array<double, 6>& numbers) {
     const glm::dvec3 direction(numbers[3], numbers[4], numbers[5]);
     const glm::dvec3 sizes = glm::abs(direction);
     const double largest = std::max({sizes.x, sizes.y, sizes.z});
-    if (!(largest > 0.0)) return std::nullopt;
+    if (!(largest > 0.0) || !all_moderate(numbers)) return std::nullopt;
     // First by the largest part, so that squares neither overflow nor vanish.
     return FileRay{origin, glm::normalize(direction / largest)};
 }

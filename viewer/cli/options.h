@@ -34,7 +34,8 @@ struct FileRay {
     glm::dvec3 direction{0.0, 0.0, -1.0};  // unit
 };
 
-// From OX OY OZ DX DY DZ with a direction of any length but 0; nothing if it is 0.
+// From OX OY OZ DX DY DZ with a direction of any length but 0. Nothing if it is 0 or a number is
+// beyond 1e30.
 std::optional<FileRay> file_ray(const std::array<double, 6>& numbers);
 
 // What the lines of standard input hold.

@@ -73,7 +73,7 @@ PickQuestion PickAnswerer::question(StreamOf about, std::string_view line) const
     const auto numbers = parse_doubles<6>(line, Separator::blanks);
     if (!numbers) return nonsense(about, "OX OY OZ DX DY DZ", line);
     const std::optional<FileRay> ray = file_ray(*numbers);
-    if (!ray) return nonsense(about, "a direction other than 0 0 0", line);
+    if (!ray) return nonsense(about, "numbers up to 1e30 and a direction other than 0 0 0", line);
     return question(*ray);
 }
 

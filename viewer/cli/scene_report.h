@@ -30,13 +30,21 @@ std::uint64_t peak_memory_bytes();
 // "objects", "triangles", ... for a JSON object of statistics.
 void add_counts(Json& json, const Scene& scene);
 
-// {"min": [x, y, z], "max": ...} in file coordinates; null if empty.
-Json bounds_json(const Scene& scene, const Bounds& bounds);
+// Bounds of one object, or of all finite visible ones, in file coordinates and as tight as double
+// numbers are; nothing for infinite planes and empty meshes.
+std::optional<ObjectExtent> file_extent(const Scene& scene, const Object& object);
+std::optional<ObjectExtent> file_extent(const Scene& scene);
 
-// A vector as a JSON array.
+// {"min": [x, y, z], "max": [x, y, z]}, or null.
+Json extent_json(const std::optional<ObjectExtent>& extent);
+
+// A vector as a JSON array. Floats are written as the shortest decimals that read back as the same
+// float, so that 0.8f is 0.8.
 Json vector_json(const glm::dvec3& v);
+Json vector_json(const glm::vec3& v);
+double shortest_decimal(float value);
 
-// Prints text that is not UTF-8 with replacement characters; `indent` as nlohmann's dump.
-std::string dump(const Json& json, int indent = -1);
+// On one line; what is not valid UTF-8 becomes U+FFFD.
+std::string dump(const Json& json);
 
 }  // namespace raypick
