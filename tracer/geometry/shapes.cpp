@@ -71,9 +71,10 @@ ShapeHits intersect(const Sphere& sphere, const ObjectRay& ray) {
 ShapeHits intersect(const Plane& plane, const ObjectRay& ray) {
     const double slope = glm::dot(plane.normal, ray.direction);
     const double height = glm::dot(plane.normal, ray.origin) + plane.d;
-    if (!(std::abs(slope) > 0.0)) return {};
+    const double t = -height / slope;
+    if (!std::isfinite(t)) return {};  // parallel, or a NaN
     ShapeHit hit;
-    hit.t = -height / slope;
+    hit.t = t;
     hit.normal = plane.normal;
     hit.uv = plane_uv(plane, ray.origin + hit.t * ray.direction);
     return {{hit, {}}, 1};
