@@ -6,7 +6,9 @@
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
 
+#include <cerrno>
 #include <exception>
+#include <system_error>
 
 namespace raypick {
 
@@ -45,11 +47,15 @@ void write_exr_file(const Image& image, const std::filesystem::path& file,
                     sizeof(std::uint32_t), cols);
         add_channel(header, frame, "primitive_id", Imf::UINT, image.primitive.data(),
                     sizeof(std::uint32_t), cols);
+        errno = 0;
         Imf::OutputFile out(file.c_str(), header);
         out.setFrameBuffer(frame);
         out.writePixels(image.size.rows);
     } catch (const std::exception& failure) {
-        throw FileError(target.string(), std::string("can't be written: ") + failure.what());
+        // OpenEXR's own words would name the temporary file.
+        const std::string reason =
+            errno != 0 ? std::generic_category().message(errno) : std::string(failure.what());
+        throw FileError(target.string(), "can't be written: " + reason);
     }
 }
 

@@ -94,6 +94,9 @@ void write_image(const Image& image, const std::filesystem::path& file) {
     if (const std::string problem = unsupported_image_name(file); !problem.empty()) {
         throw FileError(file.string(), problem);
     }
+    if (image.size.rows <= 0 || image.size.cols <= 0) {
+        throw FileError(file.string(), "can't be written: the image has no pixels");
+    }
     TemporaryFile temporary(file);
     if (lower_extension(file) == ".png") {
         write_png_file(image, temporary.path(), file);
