@@ -27,8 +27,8 @@ std::vector<Ray> model_rays(const Scene& scene, const Bounds& bounds, std::size_
         const glm::dvec3 a(mesh.positions[t.x]);
         const glm::dvec3 b(mesh.positions[t.y]);
         const glm::dvec3 target = rays.size() % 2 == 0 ? a : 0.5 * (a + b);
-        const glm::dvec3 from = glm::dvec3(bounds.centre()) +
-                                random.between(0.1, 2.0) * radius * random.direction();
+        const glm::dvec3 from =
+            glm::dvec3(bounds.centre()) + random.between(0.1, 2.0) * radius * random.direction();
         rays.push_back(ray_towards(glm::vec3(from), object.world_from_object.point(target)));
     }
     return rays;

@@ -88,7 +88,8 @@ TEST(ParallelFor, VisitsEachIndexOnce) {
         for (const std::size_t count : {0u, 1u, 2u, 1000u}) {
             std::vector<std::atomic<int>> visits(count);
             parallel_for(count, threads, {}, [&](std::size_t i) { ++visits[i]; });
-            for (const std::atomic<int>& v : visits) EXPECT_EQ(v, 1);
+            for (const std::atomic<int>& v : visits)
+                EXPECT_EQ(v, 1);
         }
     }
 }
@@ -139,9 +140,8 @@ TEST(ParallelFor, CarriesTheFirstExceptionOut) {
 
 TEST(ParallelFor, Nests) {
     std::atomic<int> visits{0};
-    parallel_for(8, 2, {}, [&](std::size_t) {
-        parallel_for(8, 2, {}, [&](std::size_t) { ++visits; });
-    });
+    parallel_for(8, 2, {},
+                 [&](std::size_t) { parallel_for(8, 2, {}, [&](std::size_t) { ++visits; }); });
     EXPECT_EQ(visits, 64);
 }
 

@@ -45,8 +45,8 @@ public:
             x_.push_back(centre.x);
             y_.push_back(centre.y);
             z_.push_back(centre.z);
-            radius_.push_back(std::max({glm::distance(centre, a), glm::distance(centre, b),
-                                        glm::distance(centre, c)}));
+            radius_.push_back(std::max(
+                {glm::distance(centre, a), glm::distance(centre, b), glm::distance(centre, c)}));
             reach_ = std::max(reach_, glm::length(centre) + radius_.back());
         }
     }
@@ -78,7 +78,8 @@ private:
 class BruteForce {
 public:
     explicit BruteForce(const Scene& scene) : scene_(scene) {
-        for (const Mesh& mesh : scene.meshes) spheres_.emplace_back(mesh);
+        for (const Mesh& mesh : scene.meshes)
+            spheres_.emplace_back(mesh);
         for (const Object& object : scene.objects) {
             object_from_world_.push_back(inverse(object.world_from_object).value());
         }
@@ -162,7 +163,8 @@ private:
 inline std::optional<Candidate> winner(const std::vector<Candidate>& candidates, double gap) {
     if (candidates.empty()) return std::nullopt;
     double closest = candidates.front().t;
-    for (const Candidate& c : candidates) closest = std::min(closest, c.t);
+    for (const Candidate& c : candidates)
+        closest = std::min(closest, c.t);
     std::optional<Candidate> best;
     for (const Candidate& c : candidates) {
         if (c.t > closest * (1.0 + gap)) continue;
@@ -188,18 +190,19 @@ inline std::string to_text(const std::optional<Hit>& hit) {
 
 inline std::string to_text(const Ray& ray) {
     std::ostringstream text;
-    text << std::hexfloat << "origin " << ray.origin.x << ' ' << ray.origin.y << ' '
-         << ray.origin.z << " direction " << ray.direction.x << ' ' << ray.direction.y << ' '
-         << ray.direction.z << " t " << ray.t_min << " .. " << ray.t_max;
+    text << std::hexfloat << "origin " << ray.origin.x << ' ' << ray.origin.y << ' ' << ray.origin.z
+         << " direction " << ray.direction.x << ' ' << ray.direction.y << ' ' << ray.direction.z
+         << " t " << ray.t_min << " .. " << ray.t_max;
     return text.str();
 }
 
-// "" if `got` is what the candidates and the tie rule say, else what is wrong. A candidate that
-// lies on the rim of the gap to a millionth of it may be in or out.
+// "" if `got` is what the candidates and the tie rule say, else what is wrong. The rule speaks
+// of the t that a Hit holds, a float: what lies on the rim of the gap, give or take the rounding of
+// two floats, may be in or out.
 inline std::string complaint(const std::optional<Hit>& got,
                              const std::vector<Candidate>& candidates) {
-    const std::optional<Candidate> narrow = winner(candidates, kTieGap * (1.0 - 1e-6));
-    const std::optional<Candidate> wide = winner(candidates, kTieGap * (1.0 + 1e-6));
+    const std::optional<Candidate> narrow = winner(candidates, 0.9 * kTieGap);
+    const std::optional<Candidate> wide = winner(candidates, 1.1 * kTieGap);
     if (!narrow) return got ? "should miss, but hits " + to_text(*got) : "";
     if (got && (*got == narrow->rounded() || *got == wide->rounded())) return "";
     return "should hit " + to_text(narrow->rounded()) + ", but " + to_text(got);

@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <string>
@@ -91,7 +92,8 @@ inline MeshData subdivided(const MeshData& coarse) {
 // A closed, convex mesh on the unit sphere: 8 * 4^levels triangles.
 inline MeshData ball_data(int levels) {
     MeshData data = octahedron_data();
-    for (int level = 0; level < levels; ++level) data = subdivided(data);
+    for (int level = 0; level < levels; ++level)
+        data = subdivided(data);
     return data;
 }
 
@@ -120,10 +122,9 @@ inline std::vector<Ray> rays_through(const Bounds& bounds, std::uint64_t seed, s
     while (rays.size() < count) {
         const glm::dvec3 target = random.point(min, max);
         const bool outside = rays.size() % 2 == 0;
-        const glm::dvec3 from =
-            outside ? glm::dvec3(bounds.centre()) + random.between(1.0, 3.0) * radius *
-                                                        random.direction()
-                    : random.point(min, max);
+        const glm::dvec3 from = outside ? glm::dvec3(bounds.centre()) +
+                                              random.between(1.0, 3.0) * radius * random.direction()
+                                        : random.point(min, max);
         Ray ray = ray_towards(glm::vec3(from), target);
         if (rays.size() % 4 == 3) {
             ray.direction = glm::vec3(0.0f);

@@ -96,7 +96,8 @@ TEST(Transform, InverseUndoes) {
 TEST(Transform, TinyAndHugeScalesHaveAnInverse) {
     for (const double s : {1e-30, 1e-6, 1e-4, 1e6, 1e30}) {
         SCOPED_TRACE(s);
-        const std::optional<Transform> back = inverse(translate({3.0, 4.0, 5.0}) * scale({s, s, s}));
+        const std::optional<Transform> back =
+            inverse(translate({3.0, 4.0, 5.0}) * scale({s, s, s}));
         ASSERT_TRUE(back.has_value());
         EXPECT_DOUBLE_EQ(back->vector({1.0, 0.0, 0.0}).x, 1.0 / s);
     }
@@ -170,9 +171,9 @@ TEST(Transform, WorldBoundsHoldAllCorners) {
         const Bounds b = world_bounds(t, low, high);
         Bounds corners;
         for (unsigned corner = 0; corner < 8; ++corner) {
-            const glm::dvec3 p = t.point({(corner & 1u) != 0 ? high.x : low.x,
-                                          (corner & 2u) != 0 ? high.y : low.y,
-                                          (corner & 4u) != 0 ? high.z : low.z});
+            const glm::dvec3 p =
+                t.point({(corner & 1u) != 0 ? high.x : low.x, (corner & 2u) != 0 ? high.y : low.y,
+                         (corner & 4u) != 0 ? high.z : low.z});
             corners.extend(glm::vec3(p));
             for (int axis = 0; axis < 3; ++axis) {
                 EXPECT_LE(static_cast<double>(b.min[axis]), p[axis] + 1e-12);

@@ -1,0 +1,362 @@
+// The frame in the making; runs under ThreadSanitizer too.
+#include "tracer/render/render_job.h"
+
+#include "tests/tracer_scenes.h"
+#include "tracer/error.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <thread>
+
+namespace raypick {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+// A bit of everything: mesh, mirror, glass, floor, two lights.
+Scene mixed_scene() {
+    Scene scene;
+    Material mirror = black_material();
+    mirror.reflect = glm::vec3(0.8f);
+    Material glass = black_material();
+    glass.transmit = glm::vec3(0.9f);
+    glass.reflect = glm::vec3(0.1f);
+    Material red;
+    red.diffuse = {0.8f, 0.1f, 0.1f};
+    red.specular = glm::vec3(0.5f);
+    place(scene, Plane{{0, 1, 0}, 1.0});
+    place(scene, Sphere{{-1.5, 0, 0}, 1.0}, add_material(scene, mirror));
+    place(scene, Sphere{{0.8, -0.2, 1.2}, 0.8}, add_material(scene, glass));
+    place_mesh(scene, ball_data(3), add_material(scene, red), translate({1.5, 0.2, -1.5}));
+    scene.lights = {PointLight{"lamp", {3, 5, 4}, glm::vec3(0.7f)},
+                    DirectionalLight{"sun", {1, -2, -1}, glm::vec3(0.4f)}};
+    return scene;
+}
+
+// Two parallel mirrors: a ray between them lives as long as the depth allows.
+Scene endless_scene() {
+    Scene scene;
+    Material mirror = black_material();
+    mirror.reflect = glm::vec3(0.999f);
+    const MaterialId id = add_material(scene, mirror);
+    place(scene, Plane{{0, 0, 1}, 6.0}, id);
+    place(scene, Plane{{0, 0, -1}, 6.0}, id);
+    return scene;
+}
+
+std::shared_ptr<const Accel> shared_accel(Scene scene) {
+    return std::make_shared<const Accel>(accel_of(std::move(scene)));
+}
+
+Camera mixed_camera() {
+    Camera camera;
+    camera.eye = {0.5, 1.5, 6.0};
+    camera.at = {0.0, 0.0, 0.0};
+    camera.near = 0.01;
+    return camera;
+}
+
+template <typename T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+void expect_same(const Image& a, const Image& b) {
+    EXPECT_EQ(a.size, b.size);
+    EXPECT_TRUE(same_bits(a.colour, b.colour));
+    EXPECT_TRUE(same_bits(a.depth, b.depth));
+    EXPECT_TRUE(same_bits(a.normal, b.normal));
+    EXPECT_TRUE(same_bits(a.object, b.object));
+    EXPECT_TRUE(same_bits(a.primitive, b.primitive));
+}
+
+constexpr ImageSize kOdd{97, 131};
+
+TEST(RenderJob, TheImageIsTheSameForAnyNumberOfThreads) {
+    const auto accel = shared_accel(mixed_scene());
+    RenderSettings settings;
+    settings.threads = 1;
+    const RenderedFrame one = render(accel, mixed_camera(), kOdd, settings);
+    EXPECT_EQ(one.rays.eye, kOdd.pixel_count());
+    EXPECT_GT(one.rays.reflection, 100u);
+    EXPECT_GT(one.rays.refraction, 100u);
+    for (const int threads : {2, 3, 7, 0}) {
+        SCOPED_TRACE(threads);
+        settings.threads = threads;
+        const RenderedFrame many = render(accel, mixed_camera(), kOdd, settings);
+        expect_same(many.image, one.image);
+        EXPECT_EQ(many.rays, one.rays);
+    }
+}
+
+TEST(RenderJob, PixelsAreWhatTracingAndPickingThemSays) {
+    const auto accel = shared_accel(mixed_scene());
+    const Camera camera = mixed_camera();
+    const RenderSettings settings;
+    const Image image = render(accel, camera, kOdd, settings).image;
+    const std::vector<Light> lights = effective_lights(accel->scene(), camera);
+    RayCounts counts;
+    int background = 0;
+    for (int row = 0; row < kOdd.rows; ++row) {
+        for (int col = 0; col < kOdd.cols; ++col) {
+            const Pixel pixel{row, col};
+            const std::size_t i = kOdd.index(pixel);
+            const Ray ray = camera_ray(camera, kOdd, pixel);
+            const TracedRay traced = trace(*accel, lights, settings, ray, counts);
+            ASSERT_EQ(image.colour[i], traced.colour) << row << ' ' << col;
+            const std::optional<Hit> pick = accel->intersect(ray);
+            ASSERT_EQ(image.object[i], pick ? pick->object : kNoObject) << row << ' ' << col;
+            if (!pick) {
+                ++background;
+                ASSERT_EQ(image.primitive[i], 0xffffffffu);
+                ASSERT_EQ(image.normal[i], glm::vec3(0.0f));
+                ASSERT_TRUE(std::isinf(image.depth[i]));
+                ASSERT_EQ(image.colour[i], accel->scene().background);
+            } else {
+                ASSERT_EQ(image.primitive[i], pick->primitive);
+                ASSERT_EQ(image.depth[i], pick->t);
+                ASSERT_EQ(image.normal[i], traced.normal);
+            }
+        }
+    }
+    EXPECT_GT(background, 100);
+    EXPECT_EQ(counts, render(accel, camera, kOdd, settings).rays);
+}
+
+TEST(RenderJob, TheNearPlaneCuts) {
+    Scene scene;
+    place(scene, Sphere{{0, 0, 3}, 0.5});
+    place(scene, Sphere{{0, 0, 0}, 1.0});
+    Camera camera;
+    camera.near = 0.01;
+    const ImageSize size{9, 9};
+    const auto accel = shared_accel(scene);
+    EXPECT_EQ(render(accel, camera, size, {}).image.object[size.index({4, 4})], 0u);
+    camera.near = 3.0;
+    EXPECT_EQ(render(accel, camera, size, {}).image.object[size.index({4, 4})], 1u);
+}
+
+TEST(RenderJob, ASceneWithoutLightsHasAHeadlight) {
+    Scene scene;
+    place(scene, Sphere{});
+    const ImageSize size{9, 9};
+    Camera camera;
+    camera.near = 0.01;
+    const Image image = render(shared_accel(scene), camera, size, {}).image;
+    EXPECT_GT(image.colour[size.index({4, 4})].x, 0.3f);
+}
+
+TEST(RenderJob, OddAndTinySizes) {
+    const auto accel = shared_accel(mixed_scene());
+    for (const ImageSize size : {ImageSize{1, 1}, ImageSize{1, 40}, ImageSize{40, 1},
+                                 ImageSize{7, 9}, ImageSize{33, 32}, ImageSize{65, 3}}) {
+        RenderJob job(accel, mixed_camera(), size, {});
+        job.wait();
+        EXPECT_EQ(job.size(), size);
+        EXPECT_EQ(job.progress().fraction, 1.0);
+        EXPECT_EQ(job.progress().rays.eye, size.pixel_count());
+        Image image;
+        std::uint64_t known = 0;
+        EXPECT_TRUE(job.snapshot(image, known));
+        expect_same(image, render(accel, mixed_camera(), size, {}).image);
+    }
+}
+
+TEST(RenderJob, BadCamerasAndSizesAreErrors) {
+    const auto accel = shared_accel(mixed_scene());
+    Camera camera = mixed_camera();
+    EXPECT_THROW(RenderJob(accel, camera, {0, 10}, {}), Error);
+    EXPECT_THROW(RenderJob(accel, camera, {10, 0}, {}), Error);
+    EXPECT_THROW(RenderJob(accel, camera, {-3, -3}, {}), Error);
+    camera.at = camera.eye;
+    EXPECT_THROW(RenderJob(accel, camera, {10, 10}, {}), Error);
+    EXPECT_THROW(render(accel, camera, {10, 10}, {}), Error);
+}
+
+TEST(RenderJob, ProgressGrowsToOne) {
+    RenderJob job(shared_accel(mixed_scene()), mixed_camera(), {240, 320}, {});
+    RenderProgress last;
+    std::uint64_t known = 0;
+    Image image;
+    int changes = 0;
+    for (;;) {
+        const RenderProgress now = job.progress();
+        EXPECT_GE(now.fraction, last.fraction);
+        EXPECT_LE(now.fraction, 1.0);
+        EXPECT_GE(now.version, last.version);
+        EXPECT_GE(now.seconds, last.seconds);
+        EXPECT_GE(now.rays.eye, last.rays.eye);
+        const std::uint64_t before = known;
+        if (job.snapshot(image, known)) {
+            ++changes;
+            EXPECT_GT(known, before);
+            EXPECT_EQ(image.size, (ImageSize{240, 320}));
+        } else {
+            EXPECT_EQ(known, before);
+        }
+        last = now;
+        if (now.finished) break;
+        std::this_thread::sleep_for(milliseconds(1));
+    }
+    job.wait();
+    EXPECT_EQ(last.fraction, 1.0);
+    EXPECT_FALSE(last.cancelled);
+    EXPECT_GT(changes, 0);
+    EXPECT_EQ(last.rays.eye, 240u * 320u);
+    const double seconds = job.progress().seconds;
+    std::this_thread::sleep_for(milliseconds(5));
+    EXPECT_EQ(job.progress().seconds, seconds) << "the clock stops at the end";
+    job.snapshot(image, known);
+    EXPECT_FALSE(job.snapshot(image, known)) << "nothing new";
+}
+
+TEST(RenderJob, TheCoarseImageComesFirst) {
+    // Slow enough that the coarse image is seen on its own.
+    RenderSettings settings;
+    settings.depth = 2000;
+    RenderJob job(shared_accel(endless_scene()), Camera{}, {320, 320}, settings);
+    Image image;
+    std::uint64_t known = 0;
+    const auto give_up = Clock::now() + std::chrono::seconds(60);
+    bool full = false;
+    while (!full && Clock::now() < give_up && !job.progress().finished) {
+        if (job.snapshot(image, known)) {
+            full = std::count(image.object.begin(), image.object.end(), kNoObject) == 0;
+        }
+        std::this_thread::sleep_for(milliseconds(1));
+    }
+    EXPECT_TRUE(full);
+    EXPECT_LT(job.progress().fraction, 0.5) << "the whole view stood long before the end";
+}
+
+// What is shown at a pixel is the sample of shown_pixel, at any moment.
+TEST(RenderJob, ShownPixelIsWhoseSampleIsShown) {
+    const ImageSize size{203, 301};
+    const auto accel = shared_accel(mixed_scene());
+    const Camera camera = mixed_camera();
+    RenderSettings settings;
+    settings.threads = 1;
+    RenderJob job(accel, camera, size, settings);
+    Random random(1);
+    Image image;
+    int coarse = 0;
+    while (!job.progress().finished) {
+        std::uint64_t known = 0;
+        if (!job.snapshot(image, known)) continue;
+        for (int i = 0; i < 20; ++i) {
+            const Pixel pixel{static_cast<int>(random.below(203)),
+                              static_cast<int>(random.below(301))};
+            const Pixel shown = job.shown_pixel(pixel);
+            ASSERT_TRUE(size.contains(shown));
+            constexpr int kStep = RenderJob::kCoarseStep;
+            EXPECT_EQ(shown.row / kStep, pixel.row / kStep);
+            EXPECT_EQ(shown.col / kStep, pixel.col / kStep);
+            if (shown == pixel) continue;
+            // Not yet traced itself when we asked, hence not when the snapshot was taken either:
+            // the snapshot shows the block's centre, or nothing yet.
+            ++coarse;
+            const std::optional<Hit> pick = accel->intersect(camera_ray(camera, size, shown));
+            const ObjectId object = image.object[size.index(pixel)];
+            const ObjectId wanted = pick ? pick->object : kNoObject;
+            const bool nothing_yet =
+                object == kNoObject && image.colour[size.index(pixel)] == glm::vec3(0.0f);
+            EXPECT_TRUE(object == wanted || nothing_yet) << pixel.row << ' ' << pixel.col;
+        }
+    }
+    job.wait();
+    EXPECT_GT(coarse, 0);
+    for (int i = 0; i < 100; ++i) {
+        const Pixel pixel{static_cast<int>(random.below(203)), static_cast<int>(random.below(301))};
+        EXPECT_EQ(job.shown_pixel(pixel), pixel);
+    }
+}
+
+TEST(RenderJob, CancelStopsInMidFrame) {
+    RenderSettings settings;
+    settings.depth = 500;
+    RenderJob job(shared_accel(endless_scene()), Camera{}, {1500, 1500}, settings);
+    const auto give_up = Clock::now() + std::chrono::seconds(60);
+    while (job.progress().version == 0 && Clock::now() < give_up) {
+        std::this_thread::sleep_for(milliseconds(1));
+    }
+    const auto asked = Clock::now();
+    job.cancel();
+    EXPECT_LT(Clock::now() - asked, milliseconds(10)) << "cancel itself must not wait";
+    job.wait();
+    // 20 ms are promised; a busy or sanitised machine gets more.
+    EXPECT_LT(Clock::now() - asked, milliseconds(400));
+    EXPECT_TRUE(job.progress().finished);
+    EXPECT_TRUE(job.progress().cancelled);
+    EXPECT_LT(job.progress().fraction, 1.0);
+    RecordProperty(
+        "milliseconds",
+        static_cast<int>(std::chrono::duration_cast<milliseconds>(Clock::now() - asked).count()));
+    job.cancel();  // again does no harm
+    job.wait();
+}
+
+TEST(RenderJob, DestructorWhileRunning) {
+    RenderSettings settings;
+    settings.depth = 500;
+    for (int i = 0; i < 5; ++i) {
+        auto job = std::make_unique<RenderJob>(shared_accel(endless_scene()), Camera{},
+                                               ImageSize{600, 600}, settings);
+        std::this_thread::sleep_for(milliseconds(3 * i));
+        const auto asked = Clock::now();
+        job.reset();
+        EXPECT_LT(Clock::now() - asked, milliseconds(400));
+    }
+}
+
+TEST(RenderJob, KeepsItsSceneAlive) {
+    auto accel = shared_accel(mixed_scene());
+    const std::weak_ptr<const Accel> watch = accel;
+    const Image wanted = render(accel, mixed_camera(), {64, 64}, {}).image;
+    {
+        RenderJob job(std::move(accel), mixed_camera(), {64, 64}, {});
+        job.wait();
+        EXPECT_FALSE(watch.expired());
+        Image image;
+        std::uint64_t known = 0;
+        job.snapshot(image, known);
+        expect_same(image, wanted);
+    }
+    EXPECT_TRUE(watch.expired()) << "the job let go of it";
+}
+
+TEST(RenderJob, SeveralAtOnce) {
+    const auto accel = shared_accel(mixed_scene());
+    const Image wanted = render(accel, mixed_camera(), {64, 96}, {}).image;
+    std::vector<std::unique_ptr<RenderJob>> jobs;
+    for (int i = 0; i < 4; ++i) {
+        jobs.push_back(std::make_unique<RenderJob>(accel, mixed_camera(), ImageSize{64, 96},
+                                                   RenderSettings{}));
+    }
+    for (const auto& job : jobs) {
+        job->wait();
+        Image image;
+        std::uint64_t known = 0;
+        job->snapshot(image, known);
+        expect_same(image, wanted);
+    }
+}
+
+TEST(RenderJob, DepthOneHasNoSecondaryRays) {
+    RenderSettings settings;
+    settings.depth = 1;
+    const RenderedFrame frame =
+        render(shared_accel(mixed_scene()), mixed_camera(), {40, 40}, settings);
+    EXPECT_EQ(frame.rays.reflection, 0u);
+    EXPECT_EQ(frame.rays.refraction, 0u);
+    EXPECT_GT(frame.rays.shadow, 0u);
+    EXPECT_GT(frame.seconds, 0.0);
+}
+
+}  // namespace
+}  // namespace raypick
