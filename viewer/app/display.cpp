@@ -1,9 +1,11 @@
-// Finds out whether a window can be opened, without hanging on a display that does not answer.
+#include "viewer/app/display.h"
+
 #include "viewer/app/view.h"
 
 #include <GLFW/glfw3.h>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,12 +13,15 @@
 #include <chrono>
 #include <cstdlib>
 #include <thread>
+#include <utility>
 
 namespace raypick {
 
 namespace {
 
-constexpr std::chrono::seconds kPatience{5};
+constexpr int kPatienceMilliseconds = 5000;
+constexpr std::chrono::milliseconds kBeforeSecondTry{150};
+constexpr char kAnswer = '1';
 
 bool display_named() {
     for (const char* variable : {"DISPLAY", "WAYLAND_DISPLAY"}) {
@@ -33,39 +38,75 @@ void silence() {
     dup2(nowhere, STDERR_FILENO);
 }
 
-[[noreturn]] void try_to_open_a_window() {
-    silence();
-    if (glfwInit() != GLFW_TRUE) _exit(1);
+bool opens_a_window() {
+    if (glfwInit() != GLFW_TRUE) return false;
     glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    _exit(glfwCreateWindow(64, 64, "raypick", nullptr, nullptr) != nullptr ? 0 : 1);
+    return glfwCreateWindow(64, 64, "raypick", nullptr, nullptr) != nullptr;
 }
 
-bool succeeds_in_time(pid_t child) {
-    const auto deadline = std::chrono::steady_clock::now() + kPatience;
-    int status = 0;
-    while (waitpid(child, &status, WNOHANG) == 0) {
-        if (std::chrono::steady_clock::now() > deadline) {
-            kill(child, SIGKILL);
-            waitpid(child, &status, 0);
-            return false;
-        }
-        std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+// The whole life of the child. It never returns into the program, whose exit handlers are not its
+// own.
+[[noreturn]] void live_as_child(int to_parent, pid_t parent) {
+    silence();
+    if (!opens_a_window() || write(to_parent, &kAnswer, 1) != 1) _exit(1);
+    // The parent ends it; should the parent be gone, nobody would.
+    while (getppid() == parent)
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    _exit(0);
 }
 
 }  // namespace
 
+DisplayProbe::DisplayProbe() {
+    if (!display_named()) return;
+    start();
+    if (outcome_ != Outcome::refuses) return;
+    // It may just be starting over.
+    std::this_thread::sleep_for(kBeforeSecondTry);
+    start();
+}
+
+DisplayProbe::~DisplayProbe() {
+    stop();
+}
+
+void DisplayProbe::start() {
+    stop();
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) return;
+    const pid_t parent = getpid();
+    child_ = fork();
+    if (child_ == 0) {
+        close(ends[0]);
+        live_as_child(ends[1], parent);
+    }
+    close(ends[1]);
+    from_child_ = ends[0];
+    if (child_ > 0) outcome_ = hear();
+}
+
+DisplayProbe::Outcome DisplayProbe::hear() const {
+    pollfd readable{from_child_, POLLIN, 0};
+    if (poll(&readable, 1, kPatienceMilliseconds) != 1) return Outcome::silent;
+    char answer = 0;
+    const bool heard = read(from_child_, &answer, 1) == 1 && answer == kAnswer;
+    return heard ? Outcome::answers : Outcome::refuses;
+}
+
+void DisplayProbe::stop() {
+    if (child_ > 0) {
+        kill(child_, SIGKILL);
+        waitpid(child_, nullptr, 0);
+        child_ = -1;
+    }
+    if (from_child_ >= 0) close(std::exchange(from_child_, -1));
+}
+
 bool display_answers() {
-    if (!display_named()) return false;
-    // Opening a display blocks for as long as its server is silent, so a child process tries it.
-    const pid_t child = fork();
-    if (child < 0) return false;
-    if (child == 0) try_to_open_a_window();
-    return succeeds_in_time(child);
+    return DisplayProbe().answers();
 }
 
 }  // namespace raypick

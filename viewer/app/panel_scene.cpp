@@ -8,6 +8,19 @@ namespace raypick {
 
 namespace {
 
+std::string counted(double count, const char* one, const char* many) {
+    return fmt::format("{} {}", short_count(count), count == 1.0 ? one : many);
+}
+
+std::string counts(const Scene& scene, const AccelStats& stats) {
+    const auto size = [](const auto& list) { return static_cast<double>(list.size()); };
+    const std::string lights =
+        scene.lights.empty() ? "headlight" : counted(size(scene.lights), "light", "lights");
+    return fmt::format("{}, {}, {}, {}", counted(size(scene.objects), "object", "objects"),
+                       counted(static_cast<double>(stats.triangles), "triangle", "triangles"),
+                       counted(size(scene.materials), "material", "materials"), lights);
+}
+
 void draw_warnings(const std::vector<std::string>& warnings) {
     const std::string label = warnings.size() == 1 ? std::string("1 warning")
                                                    : fmt::format("{} warnings", warnings.size());
@@ -31,17 +44,9 @@ void draw_scene_panel(const Document* document) {
     }
     const Scene& scene = document->scene();
     draw_text(document->file.filename().string());
-    if (begin_values("scene")) {
-        draw_value("objects", fmt::format("{}", scene.objects.size()));
-        draw_value("triangles",
-                   short_count(static_cast<double>(document->accel->stats().triangles)));
-        draw_value("materials", fmt::format("{}", scene.materials.size()));
-        draw_value("lights", scene.lights.empty() ? std::string("headlight")
-                                                  : fmt::format("{}", scene.lights.size()));
-        draw_value("opened in", fmt::format("{} + {} build", short_time(document->load_seconds),
-                                            short_time(document->build_seconds)));
-        end_values();
-    }
+    draw_dim_text(counts(scene, document->accel->stats()));
+    draw_dim_text(fmt::format("read in {}, tree in {}", short_time(document->load_seconds),
+                              short_time(document->build_seconds)));
     if (!document->warnings.empty()) draw_warnings(document->warnings);
 }
 

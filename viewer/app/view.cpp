@@ -1,11 +1,13 @@
 #include "viewer/app/view.h"
 
 #include "viewer/app/app.h"
+#include "viewer/app/display.h"
 #include "viewer/app/window.h"
 
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <memory>
 
 namespace raypick {
 
@@ -22,10 +24,12 @@ int no_window(const std::string& reason) {
 }  // namespace
 
 int run_view(const ViewOptions& options) {
-    if (!display_answers()) return no_window("no display with OpenGL 3.3 answers");
+    auto probe = std::make_unique<DisplayProbe>();
+    if (!probe->answers()) return no_window("no display with OpenGL 3.3 answers");
     try {
         InputState input;
         Window window("raypick", options.size, input);
+        probe.reset();
         App app(options, window, input);
         app.run();
         return 0;

@@ -10,6 +10,7 @@ namespace raypick {
 namespace {
 
 const ImVec4 kErrorColour{1.0f, 0.48f, 0.42f, 1.0f};
+const ImVec4 kHeading{1.0f, 0.72f, 0.40f, 1.0f};
 const ImVec4 kLit{0.62f, 0.34f, 0.06f, 1.0f};
 const ImVec4 kLitHovered{0.70f, 0.39f, 0.08f, 1.0f};
 
@@ -28,8 +29,11 @@ void draw_coloured(std::string_view text, const ImVec4& colour) {
 }  // namespace
 
 void draw_heading(const char* text) {
-    ImGui::Spacing();
+    const float gap = 0.4f * ImGui::GetFontSize();
+    ImGui::Dummy(ImVec2(0.0f, gap));
+    ImGui::PushStyleColor(ImGuiCol_Text, kHeading);
     ImGui::TextUnformatted(text);
+    ImGui::PopStyleColor();
     ImGui::Separator();
 }
 
@@ -47,7 +51,8 @@ void draw_error_text(std::string_view text) {
 
 bool begin_values(const char* id) {
     if (!ImGui::BeginTable(id, 2, ImGuiTableFlags_SizingFixedFit)) return false;
-    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed);
+    // Wide enough for the longest name, so that all tables of a panel line up.
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, 5.5f * ImGui::GetFontSize());
     ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch);
     return true;
 }
