@@ -191,8 +191,8 @@ public:
     }
 
     std::string make_footer(const CLI::App* app) const override {
-        return app->get_footer().empty() ? ""
-                                         : '\n' + wrapped(app->get_footer(), kLineColumns) + '\n';
+        const std::string footer = app->get_footer();
+        return footer.empty() ? "" : wrapped(footer, kLineColumns) + '\n';
     }
 
 private:

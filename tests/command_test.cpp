@@ -1,0 +1,511 @@
+// The real program, headless, on small files that the tests write.
+#include "program.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <csignal>
+#include <fstream>
+#include <sstream>
+
+namespace raypick {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+// Two squares across the z axis, 2 x 2 at z = 0 and 4 x 4 at z = -1, seen from (0, 0, 5): the
+// near one covers the middle, the far one stands out around it, then comes background.
+constexpr const char* kSquares =
+    "o near\n"
+    "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n"
+    "f 1 2 3 4\n"
+    "o far\n"
+    "v -2 -2 -1\nv 2 -2 -1\nv 2 2 -1\nv -2 2 -1\n"
+    "f 5 6 7 8\n";
+
+class CommandTest : public testing::Test {
+protected:
+    std::vector<std::string> pick(std::vector<std::string> more) const {
+        return command("pick", std::move(more));
+    }
+    std::vector<std::string> render(std::vector<std::string> more) const {
+        return command("render", std::move(more));
+    }
+    // The command on the squares, seen from the front.
+    std::vector<std::string> command(const std::string& name, std::vector<std::string> more) const {
+        std::vector<std::string> words = {name, squares_.string(), "--eye=0,0,5", "--look-at=0,0,0",
+                                          "--fovy=60"};
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    }
+
+    TemporaryFolder folder_;
+    std::filesystem::path squares_ = folder_.write("squares.obj", kSquares);
+};
+
+std::vector<json> json_lines(const std::string& text) {
+    std::vector<json> values;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+        values.push_back(json::parse(line));
+    return values;
+}
+
+std::size_t line_count(const std::string& text) {
+    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+// One line "raypick: ..." on standard error, nothing on standard output.
+void expect_refusal(const ProgramResult& result, int exit_code, const std::string& part) {
+    EXPECT_EQ(result.exit_code, exit_code) << result.err;
+    EXPECT_THAT(result.out, IsEmpty());
+    EXPECT_THAT(result.err, StartsWith("raypick: "));
+    EXPECT_THAT(result.err, HasSubstr(part));
+    EXPECT_EQ(line_count(result.err), 1u) << result.err;
+}
+
+TEST_F(CommandTest, HelpAndVersionGoToStandardOutput) {
+    const std::vector<std::vector<std::string>> questions = {
+        {"--help"},         {"-h"},           {"--version"},     {"view", "--help"},
+        {"pick", "--help"}, {"render", "-h"}, {"info", "--help"}};
+    for (const auto& words : questions) {
+        const ProgramResult result = run_program(words);
+        EXPECT_EQ(result.exit_code, 0) << words[0];
+        EXPECT_THAT(result.out, Not(IsEmpty())) << words[0];
+        EXPECT_THAT(result.err, IsEmpty()) << words[0];
+    }
+    EXPECT_THAT(run_program({"--version"}).out, StartsWith("raypick "));
+    EXPECT_THAT(run_program({"pick", "--help"}).out, HasSubstr("--pixel=ROW,COL"));
+}
+
+struct WrongUse {
+    const char* command;
+    std::vector<std::string> words;  // after the file's name
+    const char* named;               // what the message must name
+};
+
+TEST_F(CommandTest, WrongUsageNamesTheOptionAndExitsWith2) {
+    const std::vector<WrongUse> cases = {
+        {"pick", {}, "--pixel"},
+        {"pick", {"--pixel=1,1"}, "--resolution"},
+        {"pick", {"--pixel=-"}, "--resolution"},
+        {"pick", {"--resolution=10,10", "--pixel=10,0"}, "row 10, column 0 is outside"},
+        {"pick", {"--resolution=10,10", "--pixel=-1,0"}, "outside"},
+        {"pick", {"--resolution=20,10", "--pixel=10,15"}, "outside the image of 10 rows"},
+        {"pick", {"--resolution=10,10", "--pixel=1.0,1"}, "--pixel"},
+        {"pick", {"--resolution=10,10", "--pixel=1,1x"}, "--pixel"},
+        {"pick", {"--resolution=10,10", "--pixel= 1,1"}, "--pixel"},
+        {"pick", {"--resolution=10,10", "--pixel=1"}, "--pixel"},
+        {"pick", {"--resolution=10,10", "--pixel=1,2,3"}, "--pixel"},
+        {"pick", {"--resolution=10,10", "--pixel=1,"}, "--pixel"},
+        {"pick", {"--resolution=10,10", "--pixel="}, "--pixel"},
+        {"pick", {"--resolution=10,10", "--pixel=99999999999,1"}, "--pixel"},
+        {"pick", {"--resolution=10,10", "--pixel=1,1", "2,2"}, "2,2"},
+        {"pick", {"--resolution=10,10", "--pixel=-", "--ray=-"}, "standard input"},
+        {"pick", {"--resolution=10x10", "--pixel=1,1"}, "--resolution"},
+        {"pick", {"--resolution=0,10", "--pixel=1,1"}, "--resolution"},
+        {"pick", {"--resolution=10,-10", "--pixel=1,1"}, "--resolution"},
+        {"pick", {"--resolution=1000000,1", "--pixel=1,1"}, "--resolution"},
+        {"pick", {"--ray=0,0,5,0,0"}, "--ray"},
+        {"pick", {"--ray=0,0,5,0,0,0"}, "--ray"},
+        {"pick", {"--ray=0,0,5,0,0,nan"}, "--ray"},
+        {"pick", {"--ray=0,0,1e39,0,0,1"}, "--ray"},
+        {"pick", {"--ray=0,0,5,0,0,-1", "--eye=1,2"}, "--eye"},
+        {"pick", {"--ray=0,0,5,0,0,-1", "--eye=1,2,inf"}, "--eye"},
+        {"pick", {"--ray=0,0,5,0,0,-1", "--fovy=180"}, "--fovy"},
+        {"pick", {"--ray=0,0,5,0,0,-1", "--fovy=0"}, "--fovy"},
+        {"pick", {"--ray=0,0,5,0,0,-1", "--crease=-1"}, "--crease"},
+        {"pick", {"--resolution=9,9", "--pixel=1,1", "--eye=1,1,1", "--look-at=1,1,1"}, "--eye"},
+        {"pick", {"--bogus"}, "--bogus"},
+        {"render", {}, "--output"},
+        {"render", {"--output=x.jpg"}, "--output=x.jpg"},
+        {"render", {"--output=x"}, "--output=x"},
+        {"render", {"--output=-", "--stats=json"}, "standard output"},
+        {"render", {"--output=-", "--stats=xml"}, "--stats"},
+        {"render", {"--output=-", "--depth=0"}, "--depth"},
+        {"render", {"--output=-", "--depth=many"}, "--depth"},
+        {"render", {"--output=-", "--threads=-1"}, "--threads"},
+        {"info", {"--json=yes"}, "--json"},
+        {"info", {"another.obj"}, "another.obj"},
+        {"view", {"another.obj"}, "another.obj"},
+        {"view", {"--ui-scale=big"}, "--ui-scale"},
+    };
+    for (const WrongUse& wrong : cases) {
+        std::vector<std::string> words = {wrong.command, squares_.string()};
+        words.insert(words.end(), wrong.words.begin(), wrong.words.end());
+        SCOPED_TRACE(testing::PrintToString(words));
+        expect_refusal(run_program(words), 2, wrong.named);
+    }
+    EXPECT_THAT(folder_.names(), ElementsAre("squares.obj"));
+}
+
+TEST_F(CommandTest, ACommandWithoutAFileIsWrongUsage) {
+    for (const char* name : {"pick", "render", "info"}) {
+        SCOPED_TRACE(name);
+        expect_refusal(run_program({name}), 2, "FILE");
+    }
+}
+
+TEST_F(CommandTest, WithoutADisplayTheWindowSaysWhatElseThereIs) {
+    for (const auto& words : std::vector<std::vector<std::string>>{
+             {squares_.string()}, {"view", squares_.string()}, {}}) {
+        SCOPED_TRACE(testing::PrintToString(words));
+        const ProgramResult result = run_program(words);
+        EXPECT_EQ(result.exit_code, 1);
+        EXPECT_THAT(result.err, HasSubstr("raypick pick"));
+        EXPECT_THAT(result.err, HasSubstr("raypick render"));
+        EXPECT_EQ(line_count(result.err), 1u) << result.err;
+    }
+}
+
+TEST_F(CommandTest, PickAnswersEachPixelInOrder) {
+    const ProgramResult result = run_program(
+        pick({"--resolution=101,101", "--pixel=50,50", "--pixel=50,24", "--pixel", "0,0"}));
+    EXPECT_EQ(result.exit_code, 0) << "hitting nothing is an answer; " << result.err;
+    const auto lines = json_lines(result.out);
+    ASSERT_EQ(lines.size(), 3u);
+    EXPECT_EQ(lines[0]["object"], "near");
+    EXPECT_EQ(lines[0]["row"], 50);
+    EXPECT_EQ(lines[0]["col"], 50);
+    EXPECT_NEAR(lines[0]["t"].get<double>(), 5.0, 1e-5);
+    EXPECT_EQ(lines[0]["front_face"], true);
+    EXPECT_EQ(lines[1]["object"], "far");
+    EXPECT_EQ(lines[2], json::parse(R"({"row":0,"col":0,"hit":false})"));
+}
+
+TEST_F(CommandTest, PickPrintsTheDocumentedKeys) {
+    const ProgramResult result = run_program(pick({"--resolution=101,101", "--pixel=50,50"}));
+    const auto line = nlohmann::ordered_json::parse(result.out);
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : line.items())
+        keys.push_back(key);
+    EXPECT_THAT(keys, ElementsAre("row", "col", "hit", "object", "object_id", "primitive", "t",
+                                  "point", "normal", "uv", "front_face", "material"));
+}
+
+// Rows count from the top: a pixel in the upper half sees y > 0.
+TEST_F(CommandTest, RowZeroIsTheTopRow) {
+    const auto lines = json_lines(
+        run_program(pick({"--resolution=151,101", "--pixel=40,75", "--pixel=50,90"})).out);
+    ASSERT_EQ(lines.size(), 2u);
+    EXPECT_GT(lines[0]["point"][1].get<double>(), 0.0);
+    EXPECT_GT(lines[1]["point"][0].get<double>(), 0.0);
+}
+
+TEST_F(CommandTest, AllGivesEveryHit) {
+    const auto lines = json_lines(
+        run_program(pick({"--resolution=101,101", "--pixel=49,50", "--pixel=0,0", "--all"})).out);
+    ASSERT_EQ(lines.size(), 2u);
+    ASSERT_EQ(lines[0]["hits"].size(), 2u);
+    EXPECT_EQ(lines[0]["hits"][0]["object"], "near");
+    EXPECT_EQ(lines[0]["hits"][1]["object"], "far");
+    EXPECT_EQ(lines[0]["object"], "near");
+    EXPECT_EQ(lines[1]["hits"], json::array());
+}
+
+TEST_F(CommandTest, ARayOfAnyLengthPicksByDistance) {
+    const auto lines =
+        json_lines(run_program({"pick", squares_.string(), "--ray=0.5,0.25,5,0,0,-100", "--ray",
+                                "-0.5,0.25,-5,0,0,1e-200"})
+                       .out);
+    ASSERT_EQ(lines.size(), 2u);
+    EXPECT_EQ(lines[0]["object"], "near");
+    EXPECT_NEAR(lines[0]["t"].get<double>(), 5.0, 1e-6);
+    EXPECT_EQ(lines[0]["direction"], json::parse("[0,0,-1]"));
+    EXPECT_EQ(lines[1]["object"], "far");
+    EXPECT_EQ(lines[1]["front_face"], false);
+    EXPECT_NEAR(lines[1]["t"].get<double>(), 4.0, 1e-6);
+}
+
+TEST_F(CommandTest, AFileMayBeCalledLikeACommand) {
+    folder_.write("pick", "not a model");
+    const ProgramResult result = run_program({"info", (folder_ / "pick").string()});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.err, HasSubstr((folder_ / "pick").string()));
+}
+
+TEST_F(CommandTest, AStreamOfPixelsIsAnsweredLineByLine) {
+    const ProgramResult result =
+        run_program_on(pick({"--resolution=101,101", "--pixel=-"}), "50 50\n  50\t24  \r\n0 0");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const auto lines = json_lines(result.out);
+    ASSERT_EQ(lines.size(), 3u);
+    EXPECT_EQ(lines[0]["object"], "near");
+    EXPECT_EQ(lines[1]["object"], "far");
+    EXPECT_EQ(lines[2]["hit"], false);
+}
+
+TEST_F(CommandTest, WhatAStreamCanNotAnswerIsSaidInItsPlace) {
+    const std::string long_line(100000, '9');
+    const ProgramResult result = run_program_on(
+        pick({"--resolution=101,101", "--pixel=-"}),
+        "50 50\n101 0\nabc\n\n1 2 3\n-1 5\n1.0 2\n99999999999 1\n" + long_line + " 1\n50 24\n");
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(line_count(result.err), 1u) << result.err;
+    const auto lines = json_lines(result.out);
+    ASSERT_EQ(lines.size(), 10u) << "one line for each line";
+    EXPECT_EQ(lines[0]["object"], "near");
+    EXPECT_EQ(lines[1]["row"], 101);
+    EXPECT_EQ(lines[1]["col"], 0);
+    EXPECT_EQ(lines[5]["row"], -1);
+    for (std::size_t i = 1; i < 9; ++i) {
+        EXPECT_TRUE(lines[i].contains("error")) << lines[i];
+        EXPECT_EQ(lines[i]["line"], i + 1);
+    }
+    EXPECT_TRUE(lines[2]["row"].is_null());
+    EXPECT_EQ(lines[9]["object"], "far") << "it goes on";
+}
+
+TEST_F(CommandTest, AStreamOfRays) {
+    const ProgramResult result =
+        run_program_on({"pick", squares_.string(), "--ray=-"},
+                       "0.5 0.25 5 0 0 -1\n0 0 5 0 0 0\n0 0 5 0 0\n9 9 5 0 0 -1\n");
+    EXPECT_EQ(result.exit_code, 2);
+    const auto lines = json_lines(result.out);
+    ASSERT_EQ(lines.size(), 4u);
+    EXPECT_EQ(lines[0]["object"], "near");
+    EXPECT_TRUE(lines[1].contains("error"));
+    EXPECT_TRUE(lines[2].contains("error"));
+    EXPECT_EQ(lines[3]["hit"], false);
+}
+
+// Someone who writes one line and waits for its answer must get it.
+TEST_F(CommandTest, AnAnswerComesBeforeTheNextQuestion) {
+    RunningProgram program(pick({"--resolution=101,101", "--pixel=-"}), {}, true);
+    for (int i = 0; i < 3; ++i) {
+        program.write("50 5");
+        program.write("0\n");
+        const auto line = program.read_line();
+        ASSERT_TRUE(line) << "no answer to line " << i;
+        EXPECT_EQ(json::parse(*line)["object"], "near");
+    }
+    EXPECT_EQ(program.wait().exit_code, 0);
+}
+
+TEST_F(CommandTest, AMillionLinesStreamInBoundedMemory) {
+    std::ofstream questions(folder_ / "million");
+    for (int i = 0; i < 1000000; ++i)
+        questions << i / 1000 << ' ' << i % 1000 << '\n';
+    questions.close();
+    const ProgramResult result = run_program(pick({"--resolution=1000,1000", "--pixel=-"}),
+                                             {folder_ / "million", folder_ / "answers"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    RecordProperty("seconds", std::to_string(result.seconds));
+    EXPECT_LT(result.seconds, 60.0);
+#if !defined(__SANITIZE_ADDRESS__)
+    EXPECT_LT(result.peak_bytes, std::size_t{200} << 20);
+#endif
+    std::ifstream answers(folder_ / "answers");
+    int lines = 0;
+    int hits = 0;
+    std::string last;
+    for (std::string line; std::getline(answers, line); ++lines) {
+        const std::string place = "{\"row\":" + std::to_string(lines / 1000) +
+                                  ",\"col\":" + std::to_string(lines % 1000) + ",";
+        ASSERT_THAT(line, StartsWith(place)) << "line " << lines;
+        if (line.find("\"hit\":true") != std::string::npos) ++hits;
+    }
+    EXPECT_EQ(lines, 1000000);
+    // The far square's half width 2 at distance 6 over the view's half width tan(30) * 6.
+    EXPECT_NEAR(hits, 1e6 * 1.0 / 3.0, 5000.0);
+}
+
+TEST_F(CommandTest, AReaderThatHasEnoughEndsItQuietly) {
+    std::ofstream questions(folder_ / "many");
+    for (int i = 0; i < 200000; ++i)
+        questions << "50 50\n";
+    questions.close();
+    RunningProgram program(pick({"--resolution=101,101", "--pixel=-"}), {folder_ / "many", {}});
+    ASSERT_TRUE(program.read_line());
+    program.close_output();
+    const ProgramResult result = program.wait();
+    EXPECT_THAT(result.err, IsEmpty());
+    EXPECT_TRUE(result.signal == SIGPIPE || result.exit_code == 128 + SIGPIPE)
+        << result.signal << ' ' << result.exit_code;
+}
+
+TEST_F(CommandTest, AFullDiskIsAnError) {
+    const ProgramResult result =
+        run_program(pick({"--resolution=101,101", "--pixel=50,50"}), {"/dev/null", "/dev/full"});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.err, HasSubstr("standard output"));
+}
+
+TEST_F(CommandTest, UnreadableFilesAreOneLineAndExit1AndWriteNothing) {
+    const std::string before = "a picture from yesterday";
+    const auto output = folder_.write("old.png", before);
+    const std::vector<std::filesystem::path> files = {
+        folder_ / "missing.obj",
+        folder_.path(),
+        folder_.write("empty.obj", ""),
+        folder_.write("noise.ply", std::string("\x00\xff\x13 noise", 9)),
+        folder_.write("cut.ply", "ply\nformat ascii 1.0\nelement vertex 3\n"),
+        folder_.write("bad.json", "{\"raypick\": 1, \"objects\": [}"),
+        folder_.write("bad.gltf", "{\"asset\":"),
+        folder_.write("cut.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0"),
+        folder_.write("unknown.xyz", "1 2 3\n"),
+        folder_.write("line\nbreak.obj", "f 1 2 3\n"),
+    };
+    const auto names = folder_.names();
+    for (const auto& file : files) {
+        SCOPED_TRACE(file);
+        std::string shown = file.string();
+        std::replace(shown.begin(), shown.end(), '\n', '?');
+        expect_refusal(run_program({"info", file.string(), "--json"}), 1, shown);
+        expect_refusal(run_program({"pick", file.string(), "--resolution=9,9", "--pixel=1,1"}), 1,
+                       shown);
+        expect_refusal(run_program({"render", file.string(), "--output=" + output.string()}), 1,
+                       shown);
+    }
+    EXPECT_EQ(folder_.names(), names);
+    EXPECT_EQ(read_file(output), before);
+}
+
+TEST_F(CommandTest, RenderWritesPngAndExr) {
+    const std::string png = (folder_ / "a.png").string();
+    const std::string exr = (folder_ / "a.EXR").string();
+    EXPECT_EQ(run_program(render({"--resolution=64,48", "--output=" + png})).exit_code, 0);
+    EXPECT_EQ(run_program(render({"--resolution=64,48", "--output=" + exr})).exit_code, 0);
+    const std::string bytes = read_file(png);
+    EXPECT_THAT(bytes, StartsWith("\x89PNG\r\n\x1a\n"));
+    EXPECT_EQ(bytes.substr(16, 8), std::string("\0\0\0\x40\0\0\0\x30", 8)) << "64 x 48";
+    EXPECT_THAT(read_file(exr), StartsWith("\x76\x2f\x31\x01"));
+    EXPECT_THAT(folder_.names(), ElementsAre("a.EXR", "a.png", "squares.obj"));
+}
+
+TEST_F(CommandTest, RenderWritesPngToStandardOutput) {
+    const ProgramResult result = run_program(render({"--resolution=64,48", "--output=-"}));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out, StartsWith("\x89PNG\r\n\x1a\n"));
+    EXPECT_THAT(result.err, IsEmpty());
+    const std::string png = (folder_ / "a.png").string();
+    run_program(render({"--resolution=64,48", "--output=" + png}));
+    EXPECT_EQ(read_file(png), result.out);
+}
+
+TEST_F(CommandTest, StatsAreOneJsonObjectWithTheDocumentedKeys) {
+    const ProgramResult result = run_program(
+        render({"--resolution=64,48", "--output=" + (folder_ / "a.png").string(), "--stats=json"}));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    ASSERT_EQ(line_count(result.out), 1u);
+    const json stats = json::parse(result.out);
+    for (const char* key : {"load", "build", "trace"}) {
+        EXPECT_TRUE(stats["seconds"][key].is_number()) << key;
+        EXPECT_GE(stats["seconds"][key].get<double>(), 0.0) << key;
+    }
+    for (const char* key :
+         {"eye", "eye_hits", "reflection", "refraction", "shadow", "shadow_blocked"}) {
+        EXPECT_TRUE(stats["rays"][key].is_number_unsigned()) << key;
+    }
+    EXPECT_EQ(stats["rays"]["eye"], 64 * 48);
+    EXPECT_GT(stats["rays"]["eye_hits"].get<int>(), 0);
+    EXPECT_EQ(stats["objects"], 2);
+    EXPECT_EQ(stats["triangles"], 4);
+    EXPECT_EQ(stats["primitives"], 4);
+    for (const auto& [key, value] : stats["memory_bytes"].items()) {
+        EXPECT_TRUE(value.is_number_unsigned()) << key;
+    }
+    EXPECT_GT(stats["memory_bytes"]["peak"].get<double>(), 1e6);
+}
+
+TEST_F(CommandTest, ShadowsCanBeLeftOut) {
+    const std::string output = "--output=" + (folder_ / "a.png").string();
+    const auto stats = [&](const std::string& option) {
+        return json::parse(
+            run_program(render({"--resolution=64,48", output, "--stats=json", option})).out);
+    };
+    EXPECT_GT(stats("--threads=1")["rays"]["shadow"].get<int>(), 0);
+    EXPECT_EQ(stats("--no-shadows")["rays"]["shadow"], 0);
+}
+
+TEST_F(CommandTest, TheImageDoesNotDependOnTheNumberOfThreads) {
+    const auto image = [&](const std::string& threads) {
+        return run_program(render({"--resolution=150,101", "--output=-", threads})).out;
+    };
+    const std::string one = image("--threads=1");
+    EXPECT_FALSE(one.empty());
+    EXPECT_EQ(one, image("--threads=3"));
+    EXPECT_EQ(one, image("--threads=0"));
+}
+
+// Found before the file is even read.
+TEST_F(CommandTest, AnOutputThatCanNotBeWrittenIsFoundFirst) {
+    folder_.write("folder.png", "");
+    std::filesystem::remove(folder_ / "folder.png");
+    std::filesystem::create_directory(folder_ / "folder.png");
+    for (const std::string& output :
+         {(folder_ / "nowhere" / "a.png").string(), (folder_ / "folder.png").string(),
+          std::string("/proc/a.png")}) {
+        SCOPED_TRACE(output);
+        expect_refusal(run_program({"render", "missing.obj", "--output=" + output}), 1, output);
+    }
+}
+
+TEST_F(CommandTest, AnInterruptedRenderWritesNothing) {
+    for (const int signal : {SIGINT, SIGTERM}) {
+        RunningProgram program(render({"--resolution=4096,2048", "--threads=1", "--verbose",
+                                       "--fovy=20", "--output=" + (folder_ / "a.png").string()}),
+                               {});
+        ASSERT_TRUE(program.wait_for_error_text("built the tree"));
+        program.send(signal);
+        const ProgramResult result = program.wait();
+        EXPECT_EQ(result.exit_code, 128 + signal) << result.err;
+        EXPECT_THAT(folder_.names(), ElementsAre("squares.obj"));
+    }
+}
+
+TEST_F(CommandTest, InfoIsATableForPeople) {
+    const ProgramResult result = run_program({"info", squares_.string(), "--objects"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    for (const char* part : {"objects     2", "triangles   4", "near", "far", "(-2, -2, -1) to"}) {
+        EXPECT_THAT(result.out, HasSubstr(part));
+    }
+}
+
+TEST_F(CommandTest, InfoIsJsonForScripts) {
+    const ProgramResult result = run_program({"info", squares_.string(), "--json", "--objects"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const json info = json::parse(result.out);
+    EXPECT_EQ(info["objects"], 2);
+    EXPECT_EQ(info["triangles"], 4);
+    EXPECT_EQ(info["bounds"], json::parse(R"({"min":[-2,-2,-1],"max":[2,2,0]})"));
+    EXPECT_TRUE(info["seconds"]["load"].is_number());
+    EXPECT_TRUE(info["seconds"]["build"].is_number());
+    EXPECT_TRUE(info["memory_bytes"]["peak"].is_number());
+    for (const char* key : {"materials", "lights", "cameras"}) {
+        EXPECT_TRUE(info[key].is_array()) << key;
+    }
+    const json& objects = info["object_list"];
+    ASSERT_EQ(objects.size(), 2u);
+    EXPECT_EQ(objects[0]["name"], "near");
+    EXPECT_EQ(objects[0]["primitives"], 2);
+    EXPECT_EQ(objects[0]["bounds"], json::parse(R"({"min":[-1,-1,0],"max":[1,1,0]})"));
+    ASSERT_EQ(objects[0]["parts"].size(), 1u);
+    EXPECT_EQ(objects[0]["parts"][0]["count"], 2);
+    for (const char* key : {"id", "path"})
+        EXPECT_TRUE(objects[0].contains(key)) << key;
+    EXPECT_FALSE(json::parse(run_program({"info", squares_.string(), "--json"}).out)
+                     .contains("object_list"));
+}
+
+TEST_F(CommandTest, VerboseSaysWhatItDoesWithoutTouchingTheOutput) {
+    auto words = pick({"--resolution=101,101", "--pixel=50,50"});
+    const std::string quiet = run_program(words).out;
+    words.push_back("--verbose");
+    const ProgramResult after = run_program(words);
+    EXPECT_EQ(after.out, quiet);
+    EXPECT_THAT(after.err, HasSubstr("loaded "));
+    words.pop_back();
+    words.insert(words.begin(), "--verbose");
+    EXPECT_THAT(run_program(words).err, HasSubstr("loaded "));
+}
+
+}  // namespace
+}  // namespace raypick
