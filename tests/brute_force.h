@@ -51,26 +51,40 @@ public:
         }
     }
 
-    // Triangles that the ray's line comes near; too many rather than too few.
-    void near_line(const ObjectRay& ray, std::vector<std::uint8_t>& near) const {
+    // Triangles that the ray's line comes near; too many rather than too few. Block by block, so
+    // that the compiler can do several at once.
+    void near_line(const ObjectRay& ray, std::vector<std::uint32_t>& near) const {
+        constexpr std::size_t kBlock = 64;
         const glm::vec3 o(ray.origin);
         const glm::vec3 d(glm::normalize(ray.direction));
         const float slack = 1e-5f * (reach_ + glm::length(o));
-        near.resize(x_.size());
-        for (std::size_t i = 0; i < x_.size(); ++i) {
-            const float x = x_[i] - o.x;
-            const float y = y_[i] - o.y;
-            const float z = z_[i] - o.z;
-            const float cx = y * d.z - z * d.y;
-            const float cy = z * d.x - x * d.z;
-            const float cz = x * d.y - y * d.x;
-            const float r = radius_[i] + slack;
-            // Arranged so that NaN means near.
-            near[i] = !(cx * cx + cy * cy + cz * cz > r * r);
+        near.clear();
+        for (std::size_t first = 0; first < x_.size(); first += kBlock) {
+            const std::size_t end = std::min(first + kBlock, x_.size());
+            int any = 0;
+            for (std::size_t i = first; i < end; ++i)
+                any |= is_near(i, o, d, slack) ? 1 : 0;
+            if (any == 0) continue;
+            for (std::size_t i = first; i < end; ++i) {
+                if (is_near(i, o, d, slack)) near.push_back(static_cast<std::uint32_t>(i));
+            }
         }
     }
 
 private:
+    // Arranged so that NaN means near.
+    [[nodiscard]] bool is_near(std::size_t i, const glm::vec3& o, const glm::vec3& d,
+                               float slack) const {
+        const float x = x_[i] - o.x;
+        const float y = y_[i] - o.y;
+        const float z = z_[i] - o.z;
+        const float cx = y * d.z - z * d.y;
+        const float cy = z * d.x - x * d.z;
+        const float cz = x * d.y - y * d.x;
+        const float r = radius_[i] + slack;
+        return !(cx * cx + cy * cy + cz * cz > r * r);
+    }
+
     std::vector<float> x_, y_, z_, radius_;
     float reach_ = 0.0f;
 };
@@ -118,10 +132,9 @@ private:
     void collect_mesh(const Object& object, MeshId id, const ObjectRay& ray,
                       std::vector<Candidate>& found) const {
         const Mesh& mesh = scene_.meshes[id];
-        std::vector<std::uint8_t> near;
+        std::vector<std::uint32_t> near;
         spheres_[id].near_line(ray, near);
-        for (std::uint32_t i = 0; i < near.size(); ++i) {
-            if (near[i] == 0) continue;
+        for (const std::uint32_t i : near) {
             const glm::uvec3& t = mesh.triangles[i];
             const Triangle triangle{glm::dvec3(mesh.positions[t.x]),
                                     glm::dvec3(mesh.positions[t.y]),

@@ -13,3 +13,11 @@ raypick_test(render_job_test LABELS cpu threads)
 find_package(OpenEXR REQUIRED)
 pkg_check_modules(stb REQUIRED IMPORTED_TARGET stb)
 raypick_test(image_test LABELS cpu LIBS OpenEXR::OpenEXR PkgConfig::stb)
+
+# Without Embree the test says so: skipped at home, failed in CI.
+raypick_test(embree_oracle_test LABELS oracle TIMEOUT 600)
+find_package(embree 3 QUIET)
+if(embree_FOUND)
+    target_link_libraries(embree_oracle_test PRIVATE embree)
+    target_compile_definitions(embree_oracle_test PRIVATE RAYPICK_HAS_EMBREE)
+endif()
