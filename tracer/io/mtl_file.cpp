@@ -1,0 +1,188 @@
+#include "tracer/io/mtl_file.h"
+
+#include "tracer/io/file_bytes.h"
+#include "tracer/io/text_scanner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <optional>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+
+namespace raypick {
+
+namespace {
+
+// Keywords that are known and have no meaning here; textures come with a later version.
+constexpr std::array<std::string_view, 13> kPassedOver = {
+    "Ka",  "sharpness", "Km",     "Pr",         "Pm",        "Ps", "Pc",
+    "Pcr", "aniso",     "anisor", "bAlphatest", "bBackface", "Ms"};
+
+bool is_texture(std::string_view keyword) {
+    return keyword.substr(0, 4) == "map_" || keyword == "bump" || keyword == "disp" ||
+           keyword == "decal" || keyword == "refl" || keyword == "norm" ||
+           keyword.substr(0, 4) == "Map_";
+}
+
+class MtlParser {
+public:
+    MtlParser(const std::filesystem::path& file, MtlLibrary& library,
+              std::vector<std::string>& warnings)
+        : text_(file),
+          scanner_(file.string(), text_.view()),
+          library_(library),
+          warnings_(warnings) {}
+
+    void parse() {
+        while (!scanner_.at_end()) {
+            read_line(scanner_.word());
+            scanner_.next_line();
+        }
+    }
+
+private:
+    void read_line(std::string_view keyword) {
+        if (keyword.empty() || keyword[0] == '#') return;
+        if (keyword == "newmtl") {
+            begin_material();
+        } else if (material_ == nullptr) {
+            scanner_.fail(in_quotes(keyword) + " before the first newmtl");
+        } else if (!read_colour(keyword) && !read_value(keyword)) {
+            read_other(keyword);
+        }
+    }
+
+    void begin_material() {
+        const std::string name = clean_name(scanner_.rest());
+        material_ = &library_[name];
+        *material_ = MtlMaterial();
+        material_->name = name;
+    }
+
+    bool read_colour(std::string_view keyword) {
+        if (keyword == "Kd") {
+            colour(keyword, material_->kd);
+        } else if (keyword == "Ks") {
+            colour(keyword, material_->ks);
+        } else if (keyword == "Ke") {
+            colour(keyword, material_->ke);
+        } else if (keyword == "Tf") {
+            colour(keyword, material_->tf);
+        } else {
+            return false;
+        }
+        return true;
+    }
+
+    bool read_value(std::string_view keyword) {
+        if (keyword == "Ns") {
+            material_->ns = number(keyword);
+        } else if (keyword == "Ni") {
+            material_->ni = number(keyword);
+        } else if (keyword == "Tr") {
+            material_->tr = number(keyword);
+        } else if (keyword == "d") {
+            if (scanner_.peek() == '-') scanner_.word();  // -halo
+            material_->d = number(keyword);
+        } else if (keyword == "illum") {
+            const double illum = number(keyword);
+            material_->illum = illum >= 0.0 && illum <= 10.0 ? static_cast<int>(illum) : 2;
+        } else {
+            return false;
+        }
+        return true;
+    }
+
+    void read_other(std::string_view keyword) {
+        if (is_texture(keyword)) {
+            material_->textured = true;
+            return;
+        }
+        const bool known =
+            std::find(kPassedOver.begin(), kPassedOver.end(), keyword) != kPassedOver.end();
+        if (known || told_unknown_) return;
+        told_unknown_ = true;
+        warnings_.push_back(
+            scanner_.place(in_quotes(keyword) + " is no MTL keyword that we know: ignored"));
+    }
+
+    double number(std::string_view what) {
+        const double value = scanner_.number(what);
+        if (!std::isfinite(value)) scanner_.fail(fmt::format("{} is not finite", what));
+        return value;
+    }
+
+    // One number stands for all three. Spectral curves and CIE XYZ are not read.
+    void colour(std::string_view keyword, glm::vec3& rgb) {
+        const char first = scanner_.peek();
+        if (first == 's' || first == 'x') {
+            warnings_.push_back(scanner_.place(
+                fmt::format("{} is only read as red, green, blue: ignored", keyword)));
+            return;
+        }
+        const auto r = static_cast<float>(number(keyword));
+        rgb = glm::vec3(r);
+        const char next = scanner_.peek();
+        if (next == '\n' || next == '#') return;
+        rgb.y = static_cast<float>(number(keyword));
+        rgb.z = static_cast<float>(number(keyword));
+    }
+
+    FileText text_;
+    TextScanner scanner_;
+    MtlLibrary& library_;
+    std::vector<std::string>& warnings_;
+    MtlMaterial* material_ = nullptr;
+    bool told_unknown_ = false;
+};
+
+std::string with_slashes(std::string name) {
+    std::replace(name.begin(), name.end(), '\\', '/');
+    return name;
+}
+
+// As it is named, else (an absolute path from another machine) by its last name beside the OBJ.
+std::optional<std::filesystem::path> find_beside(const std::filesystem::path& obj_file,
+                                                 const std::string& name) {
+    const std::filesystem::path folder = obj_file.parent_path();
+    const std::filesystem::path path = with_slashes(name);
+    std::error_code error;
+    for (const std::filesystem::path& candidate : {folder / path, folder / path.filename()}) {
+        if (std::filesystem::is_regular_file(candidate, error)) return candidate;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+void read_mtl(const std::filesystem::path& file, MtlLibrary& library,
+              std::vector<std::string>& warnings) {
+    MtlParser(file, library, warnings).parse();
+}
+
+MtlPaths find_mtl(const std::filesystem::path& obj_file, const std::string& names) {
+    MtlPaths paths;
+    if (auto whole = find_beside(obj_file, names)) {
+        paths.found.push_back(*std::move(whole));
+        return paths;
+    }
+    std::istringstream words(names);
+    std::string word;
+    while (words >> word) {
+        if (auto path = find_beside(obj_file, word)) {
+            paths.found.push_back(*std::move(path));
+        } else {
+            paths.missing.push_back(word);
+        }
+    }
+    // "my materials.mtl" that is not there is one file, not two.
+    if (paths.found.empty()) paths.missing.assign(1, names);
+    return paths;
+}
+
+}  // namespace raypick
