@@ -3,17 +3,13 @@
 // that passes by the edge by less than its resolution gets the edge's t.
 //
 // Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
-uniform usamplerBuffer triangles;  // a texel: three vertices and the material
-uniform samplerBuffer positions;   // object space
-uniform samplerBuffer normals;     // object space, if has_normals
+#include "mesh_arrays.glsl"
+
+uniform samplerBuffer normals;  // object space, if has_normals
 uniform bool has_normals;
 uniform int first_primitive;  // of this draw, which may be a part of the mesh
-uniform vec3 eye_high;        // the eye in object space is eye_high + eye_low
-uniform vec3 eye_low;
 
-vec3 corner(uint vertex) {
-    return (texelFetch(positions, int(vertex)).xyz - eye_high) - eye_low;
-}
+flat in int triangle_index;  // within this draw
 
 // Axes turned so that z is the one along which the ray runs fastest.
 vec3 turned(vec3 v, int fastest) {
@@ -34,10 +30,10 @@ vec3 weights(vec3 a, vec3 b, vec3 c, vec2 slope) {
 }
 
 Surface closest_surface(vec3 direction, float t_min) {
-    uvec4 triangle = texelFetch(triangles, gl_PrimitiveID);
-    vec3 a = corner(triangle.x);
-    vec3 b = corner(triangle.y);
-    vec3 c = corner(triangle.z);
+    uvec4 triangle = texelFetch(triangles, triangle_index);
+    vec3 a = from_eye(triangle.x);
+    vec3 b = from_eye(triangle.y);
+    vec3 c = from_eye(triangle.z);
     vec3 d = object_direction(direction);
     vec3 speed = abs(d);
     int fastest = speed.x > speed.y ? (speed.x > speed.z ? 0 : 2) : (speed.y > speed.z ? 1 : 2);
@@ -62,7 +58,7 @@ Surface closest_surface(vec3 direction, float t_min) {
         if (dot(n, face) < 0.0) n = -n;  // as tracer/accel/surface.cpp
         if (dot(n, n) > 1e-12) s.shading = scene_normal(n);
     }
-    s.primitive = uint(first_primitive + gl_PrimitiveID);
+    s.primitive = uint(first_primitive + triangle_index);
     s.material = triangle.w;
     return s;
 }

@@ -1,12 +1,18 @@
-// A mesh's vertices, relative to the eye before anything is rotated or scaled.
+// A mesh's corners, three a triangle, relative to the eye before anything is rotated or scaled.
+// They are read by number rather than through an index buffer: gl_PrimitiveID would be the other
+// way to tell the fragments their triangle, and software OpenGL takes a slow path for it.
+#include "mesh_arrays.glsl"
 #include "view.glsl"
 
-layout(location = 0) in vec3 position;
-
 uniform mat3 clip_from_object;
-uniform vec3 eye_high;  // the eye in object space is eye_high + eye_low
-uniform vec3 eye_low;
+
+flat out int triangle_index;
 
 void main() {
-    gl_Position = clip_position(clip_from_object * ((position - eye_high) - eye_low));
+    triangle_index = gl_VertexID / 3;
+    uvec4 triangle = texelFetch(triangles, triangle_index);
+    int k = gl_VertexID - 3 * triangle_index;
+    gl_Position =
+        clip_position(clip_from_object *
+                      from_eye(k == 0 ? triangle.x : k == 1 ? triangle.y : triangle.z));
 }

@@ -341,6 +341,27 @@ TEST_F(RasterizerTest, CoplanarFacesOfDifferentShapes) {
     }
 }
 
+TEST_F(RasterizerTest, DroppingTheTieRuleChangesOnlyTies) {
+    use(mixed_scene());
+    const Camera camera = look({0.5, 1.5, 6.0}, {0.2, 0.2, 0.1});
+    const Image kept = draw(camera);
+    rasterizer_->draw(camera, kSize, 0xffffffffu, TieRule::dropped);
+    const Image dropped = rasterizer_->read_image();
+    EXPECT_EQ(dropped.object, kept.object);
+    EXPECT_EQ(dropped.depth, kept.depth);
+    // Doubled: only the other copy may show.
+    Scene doubled = mixed_scene();
+    for (const Object& object : mixed_scene().objects) {
+        Object copy = object;
+        copy.name += " again";
+        add_object(doubled, copy);
+    }
+    use(std::move(doubled));
+    EXPECT_EQ(draw(camera).object, kept.object);
+    rasterizer_->draw(camera, kSize, 0xffffffffu, TieRule::dropped);
+    EXPECT_EQ(rasterizer_->read_image().depth, kept.depth);
+}
+
 TEST_F(RasterizerTest, PrimitivesAreNumberedAsTheTracerNumbersThem) {
     use(mixed_scene());
     const Camera camera = look({0.5, 1.5, 6.0}, {0.2, 0.2, 0.1});

@@ -69,17 +69,6 @@ GpuMesh::Chunk upload_chunk(const Mesh& mesh, const MeshChunk& run) {
     if (chunk.has_normals) {
         chunk.normals = upload(GL_RGBA32F, padded(mesh.normals, run), "normals");
     }
-    chunk.indices = new_buffer();
-    chunk.vertex_array = new_vertex_array();
-    glBindVertexArray(chunk.vertex_array.name());
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, chunk.indices.name());
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(triangles.size_bytes()),
-                 triangles.data(), GL_STATIC_DRAW);
-    glBindBuffer(GL_ARRAY_BUFFER, chunk.positions.buffer());
-    glEnableVertexAttribArray(0);
-    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(glm::vec4), nullptr);
-    glBindVertexArray(0);
-    glBindBuffer(GL_ARRAY_BUFFER, 0);
     return chunk;
 }
 

@@ -29,8 +29,6 @@ public:
         BufferTexture positions;
         BufferTexture normals;
         bool has_normals = false;
-        Buffer indices;
-        VertexArray vertex_array;
     };
     [[nodiscard]] const std::vector<Chunk>& chunks() const { return chunks_; }
 

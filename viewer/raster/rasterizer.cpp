@@ -39,9 +39,7 @@ struct ShapeDraw {
             bind(Unit::triangles, GL_TEXTURE_BUFFER, chunk.triangles.texture());
             bind(Unit::positions, GL_TEXTURE_BUFFER, chunk.positions.texture());
             bind(Unit::normals, GL_TEXTURE_BUFFER, chunk.normals.texture());
-            glBindVertexArray(chunk.vertex_array.name());
-            glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * chunk.count), GL_UNSIGNED_INT,
-                           nullptr);
+            glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * chunk.count));
         }
     }
 
@@ -121,7 +119,8 @@ struct Rasterizer::State {
     void draw_objects(const std::array<Program, kShapeKinds>& programs, const ViewNumbers& view,
                       std::span<const DrawnObject* const> objects) const;
     void depth_pass(const ViewNumbers& view, std::span<const DrawnObject* const> objects) const;
-    void surface_pass(const ViewNumbers& view, std::span<const DrawnObject* const> objects) const;
+    void surface_pass(const ViewNumbers& view, std::span<const DrawnObject* const> objects,
+                      TieRule ties) const;
     void shade_pass(const Camera& camera, const ViewNumbers& view) const;
 };
 
@@ -141,7 +140,6 @@ void Rasterizer::State::draw_objects(const std::array<Program, kShapeKinds>& pro
         const Uniforms uniforms(programs[object->shape.index()]);
         uniforms.set("object_id", object->id);
         uniforms.set("object_material", object->material);
-        glBindVertexArray(no_vertices.name());
         std::visit(ShapeDraw{view, *object, uniforms}, object->shape);
     }
 }
@@ -155,13 +153,20 @@ void Rasterizer::State::depth_pass(const ViewNumbers& view,
 }
 
 void Rasterizer::State::surface_pass(const ViewNumbers& view,
-                                     std::span<const DrawnObject* const> objects) const {
+                                     std::span<const DrawnObject* const> objects,
+                                     TieRule ties) const {
     glBindFramebuffer(GL_FRAMEBUFFER, frame.surface.name());
-    glDepthFunc(GL_LEQUAL);
-    glDepthMask(GL_FALSE);
-    glEnable(GL_STENCIL_TEST);
-    glStencilFunc(GL_EQUAL, 0, 0xff);
-    glStencilOp(GL_KEEP, GL_KEEP, GL_INCR);
+    glEnable(GL_DEPTH_TEST);
+    if (ties == TieRule::kept) {
+        // The first one within the gap of the depth that the first pass left takes the pixel.
+        glDepthFunc(GL_LEQUAL);
+        glDepthMask(GL_FALSE);
+        glEnable(GL_STENCIL_TEST);
+        glStencilFunc(GL_EQUAL, 0, 0xff);
+        glStencilOp(GL_KEEP, GL_KEEP, GL_INCR);
+    } else {
+        glDepthFunc(GL_LESS);
+    }
     draw_objects(shaders.surface, view, objects);
     glDisable(GL_STENCIL_TEST);
     glDisable(GL_DEPTH_TEST);
@@ -180,7 +185,6 @@ void Rasterizer::State::shade_pass(const Camera& camera, const ViewNumbers& view
     uniforms.set("light_count", lights.count);
     uniforms.set("ambient", scene.scene->ambient);
     uniforms.set("background", scene.scene->background);
-    glBindVertexArray(no_vertices.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
@@ -192,7 +196,7 @@ void Rasterizer::set_scene(std::shared_ptr<const Scene> scene) {
     state_->scene = upload_scene(std::move(scene), state_->scene);
 }
 
-void Rasterizer::draw(const Camera& camera, ImageSize size, std::uint32_t mask) {
+void Rasterizer::draw(const Camera& camera, ImageSize size, std::uint32_t mask, TieRule ties) {
     if (state_->scene.scene == nullptr) throw Error("there is no scene to draw");
     const KeepFramebuffer keep;
     state_->reload_changed_shaders();
@@ -209,9 +213,10 @@ void Rasterizer::draw(const Camera& camera, ImageSize size, std::uint32_t mask) 
         }
     }
     glViewport(0, 0, size.cols, size.rows);
+    glBindVertexArray(state_->no_vertices.name());
     state_->frame.clear();
-    state_->depth_pass(view, objects);
-    state_->surface_pass(view, objects);
+    if (ties == TieRule::kept) state_->depth_pass(view, objects);
+    state_->surface_pass(view, objects, ties);
     state_->shade_pass(camera, view);
     glBindVertexArray(0);
     glUseProgram(0);
