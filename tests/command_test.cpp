@@ -132,7 +132,7 @@ TEST_F(CommandTest, WrongUsageNamesTheOptionAndExitsWith2) {
         {"render", {"--output=-", "--depth=0"}, "--depth"},
         {"render", {"--output=-", "--depth=many"}, "--depth"},
         {"render", {"--output=-", "--threads=-1"}, "--threads"},
-        {"info", {"--json=yes"}, "--json"},
+        {"info", {"--json=maybe"}, "--json"},
         {"info", {"another.obj"}, "another.obj"},
         {"view", {"another.obj"}, "another.obj"},
         {"view", {"--ui-scale=big"}, "--ui-scale"},
