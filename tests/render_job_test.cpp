@@ -219,7 +219,7 @@ TEST(RenderJob, ProgressGrowsToOne) {
 TEST(RenderJob, TheCoarseImageComesFirst) {
     // Slow enough that the coarse image is seen on its own.
     RenderSettings settings;
-    settings.depth = 2000;
+    settings.depth = 200;
     RenderJob job(shared_accel(endless_scene()), Camera{}, {320, 320}, settings);
     Image image;
     std::uint64_t known = 0;
