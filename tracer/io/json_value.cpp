@@ -54,21 +54,48 @@ std::string place(std::string_view text, std::size_t byte) {
     return fmt::format("line {}, column {}", line, column);
 }
 
-// The parser's complaint without its own prefix "[json...] parse error at line 1, column 2: ".
-std::string bare_complaint(std::string_view what) {
+// A character as a message shows it.
+std::string shown_character(std::string_view text, std::size_t byte) {
+    if (byte >= text.size()) return "end of the file";
+    const char c = text[byte];
+    return c > ' ' && c <= '~' ? fmt::format("'{}'", c) : "character";
+}
+
+void replace(std::string& text, std::string_view from, std::string_view to) {
+    for (std::size_t at = text.find(from); at != std::string::npos;
+         at = text.find(from, at + to.size())) {
+        text.replace(at, from.size(), to);
+    }
+}
+
+// The parser's complaint for a person. It says "[json...] parse error at line 1, column 2: syntax
+// error while parsing value - invalid literal; last read: '...'; expected string literal".
+std::string bare_complaint(std::string_view what, std::string_view text, std::size_t byte) {
     if (const std::size_t id = what.find("] "); id != std::string_view::npos) {
         what.remove_prefix(id + 2);
     }
     if (what.rfind("parse error at ", 0) == 0) {
-        const std::size_t end = what.find(": ");
-        if (end != std::string_view::npos) what.remove_prefix(end + 2);
+        what.remove_prefix(std::min(what.size(), what.find(" - ") + 3));
     }
-    return shortened(std::string(what), kMaxShown);
+    std::string complaint(what);
+    if (const std::size_t read = complaint.find("; last read: '"); read != std::string::npos) {
+        const std::size_t expected = complaint.rfind("; expected ");
+        const bool goes_on = expected != std::string::npos && expected > read;
+        complaint.erase(read, goes_on ? expected - read : std::string::npos);
+    }
+    replace(complaint, "invalid literal", "unexpected " + shown_character(text, byte));
+    replace(complaint, "end of input", "end of the file");
+    replace(complaint, "string literal", "text in quotes");
+    replace(complaint, "or a literal", "a text, a number, true, false or null");
+    return shortened(std::move(complaint), kMaxShown);
 }
 
 // First pass over the text: finds what a DOM could not tell any more.
 class SyntaxCheck : public nlohmann::json_sax<Json> {
 public:
+    explicit SyntaxCheck(std::string_view text) : text_(text) {}
+
+    // Only after it stopped the parser: what is wrong, and where if that is a byte of the text.
     [[nodiscard]] const std::string& complaint() const { return complaint_; }
     [[nodiscard]] std::optional<std::size_t> byte() const { return byte_; }
 
@@ -96,7 +123,7 @@ public:
     bool parse_error(std::size_t position, const std::string&,
                      const nlohmann::detail::exception& error) override {
         byte_ = position > 0 ? position - 1 : 0;
-        complaint_ = bare_complaint(error.what());
+        complaint_ = bare_complaint(error.what(), text_, *byte_);
         return false;
     }
 
@@ -139,6 +166,7 @@ private:
         return path;
     }
 
+    std::string_view text_;
     std::vector<Level> levels_;
     std::string complaint_;
     std::optional<std::size_t> byte_;
@@ -170,7 +198,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 Json parse_json(const std::string& file, std::string_view text) {
-    SyntaxCheck check;
+    SyntaxCheck check(text);
     constexpr bool kStrict = true;
     constexpr bool kComments = true;
     constexpr bool kExceptions = true;
