@@ -1,3 +1,8 @@
 # Tests of the room in this file's name.
 raypick_test(gl_handle_gl_test LABELS gl LIBS raypick_raster)
 raypick_test(rasterizer_gl_test LABELS gl LIBS raypick_raster)
+
+# These open model files.
+if(TARGET raypick_io)
+    raypick_test(agreement_gl_test LABELS gl data LIBS raypick_raster raypick_io TIMEOUT 600)
+endif()
