@@ -451,7 +451,7 @@ TEST_F(CommandTest, AnOutputThatCanNotBeWrittenIsFoundFirst) {
 TEST_F(CommandTest, AnInterruptedRenderWritesNothing) {
     for (const int signal : {SIGINT, SIGTERM}) {
         RunningProgram program(render({"--resolution=4096,2048", "--threads=1", "--verbose",
-                                       "--fovy=20", "--output=" + (folder_ / "a.png").string()}),
+                                       "--output=" + (folder_ / "a.png").string()}),
                                {});
         ASSERT_TRUE(program.wait_for_error_text("built the tree"));
         program.send(signal);

@@ -4,6 +4,8 @@
 #include "viewer/cli/exit_code.h"
 #include "viewer/cli/standard_output.h"
 
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -24,9 +26,12 @@ void check_writable(const std::filesystem::path& file) {
     if (fs::exists(file, ignored) && ::access(file.c_str(), W_OK) != 0) {
         fail(std::string("can't be written: ") + std::strerror(errno));
     }
-    if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-        fail("can't be written: folder " + folder.string() + ": " + std::strerror(errno));
-    }
+    // Permissions don't tell all (read-only and special file systems, quotas): try it.
+    const fs::path probe = file.string() + fmt::format(".{}.probe", ::getpid());
+    const int descriptor = ::open(probe.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    if (descriptor < 0) fail(std::string("can't be written: ") + std::strerror(errno));
+    ::close(descriptor);
+    fs::remove(probe, ignored);
 }
 
 }  // namespace
