@@ -194,6 +194,8 @@ TEST_F(InputTest, ADialogTakesMouseAndKeys) {
     EXPECT_EQ(input_.hover(), std::nullopt);
     input_.key(Key::escape, {});
     EXPECT_EQ(only_action<Command>(), Command::escape);
+    input_.key(Key::enter, {});
+    EXPECT_EQ(only_action<Command>(), Command::confirm);
     input_.key(Key::q, {.control = true});
     EXPECT_EQ(only_action<Command>(), Command::quit);
 }
@@ -201,7 +203,7 @@ TEST_F(InputTest, ADialogTakesMouseAndKeys) {
 TEST_F(InputTest, LettersTypedIntoATextFieldAreNoCommands) {
     screen_.typing = true;
     input_.set_screen(screen_);
-    for (const Key key : {Key::f, Key::r, Key::h, Key::home, Key::tab})
+    for (const Key key : {Key::f, Key::r, Key::h, Key::home, Key::tab, Key::enter})
         input_.key(key, {});
     EXPECT_THAT(input_.take_actions(), IsEmpty());
 }

@@ -178,6 +178,9 @@ void App::apply(Command command) {
         case Command::escape:
             escape();
             break;
+        case Command::confirm:
+            confirm_ = true;
+            break;
         case Command::toggle_help:
             if (std::holds_alternative<HelpSheet>(overlay_)) {
                 overlay_ = std::monostate{};
@@ -262,9 +265,8 @@ void App::draw() {
     glViewport(0, 0, metrics.framebuffer_cols, metrics.framebuffer_rows);
     glClearColor(0.10f, 0.11f, 0.12f, 1.0f);
     glClear(GL_COLOR_BUFFER_BIT);
-    const bool on_object = hover_.pick && hover_.pick->pick;
-    view_.present(layout_.view, metrics.framebuffer_rows, selected_objects(),
-                  on_object ? hover_.pick->pick->hit.object : kNoObject);
+    // The status bar names what the cursor is on; an outline is for what is selected.
+    view_.present(layout_.view, metrics.framebuffer_rows, selected_objects());
     ui_.begin_frame();
     draw_panels();
     ui_.end_frame();
@@ -307,7 +309,8 @@ void App::draw_loading() {
 }
 
 void App::draw_dialog() {
-    const OverlayAnswer answer = draw_overlay(overlay_);
+    // Confirmed only now, after what was typed before Enter has reached the text field.
+    const OverlayAnswer answer = draw_overlay(overlay_, std::exchange(confirm_, false));
     if (answer.name) {
         const bool saving = std::get<PathDialog>(overlay_).purpose == PathDialog::Purpose::save;
         overlay_ = std::monostate{};
@@ -348,6 +351,11 @@ std::string App::title() const {
         return title + " - opening " + progress->file.filename().string();
     }
     if (std::holds_alternative<MessageBox>(overlay_)) return title + " - error";
+    if (const auto* dialog = std::get_if<PathDialog>(&overlay_)) {
+        const bool saving = dialog->purpose == PathDialog::Purpose::save;
+        // Named once one can type.
+        if (ui_.typing()) return title + (saving ? " - save" : " - open");
+    }
     switch (view_.trace_status().state) {
         case PreviewStatus::State::off:
             return title;

@@ -87,7 +87,8 @@ private:
     Layout layout_;
     std::optional<UiRegion> load_card_;
     Overlay overlay_;
-    std::string message_;  // of the last thing done, for the status bar
+    bool confirm_ = false;  // Enter was pressed since the last frame
+    std::string message_;   // of the last thing done, for the status bar
     bool quit_ = false;
 };
 

@@ -44,6 +44,8 @@ std::optional<Command> command_for(Key key, Modifiers modifiers) {
             return Command::toggle_trace;
         case Key::escape:
             return Command::escape;
+        case Key::enter:
+            return Command::confirm;
         case Key::f1:
         case Key::h:
             return Command::toggle_help;
@@ -139,10 +141,11 @@ void InputState::wheel(double steps, const CursorAt& at) {
 void InputState::key(Key key, Modifiers modifiers) {
     const std::optional<Command> command = command_for(key, modifiers);
     if (!command) return;
-    const bool always = command == Command::quit || command == Command::escape;
-    const bool in_dialog = always || command == Command::toggle_help;
+    const bool confirms = screen_.modal && command == Command::confirm;
+    const bool always = confirms || command == Command::quit || command == Command::escape;
     if (screen_.typing && !always) return;
-    if (screen_.modal && !in_dialog) return;
+    if (screen_.modal && !always && command != Command::toggle_help) return;
+    if (command == Command::confirm && !confirms) return;
     actions_.emplace_back(*command);
 }
 

@@ -20,7 +20,8 @@ enum class Command {
     frame_selected,
     frame_all,
     toggle_trace,
-    escape,  // close what is open, else stop the render, else clear the selection
+    escape,   // close what is open, else stop the render, else clear the selection
+    confirm,  // what a dialog asks
     toggle_help,
     toggle_panels,
     open,
@@ -30,7 +31,7 @@ enum class Command {
 };
 
 // The keys that mean something to us. Letters are those printed on the keyboard, not positions.
-enum class Key { f, h, o, q, r, s, home, escape, tab, f1, f12 };
+enum class Key { f, h, o, q, r, s, enter, escape, f1, f12, home, tab };
 
 struct Modifiers {
     bool shift = false;

@@ -36,7 +36,7 @@ constexpr HelpLine kHelp[] = {
     {"quit", "Ctrl + Q"},
 };
 
-void draw_body(HelpSheet& /*sheet*/, OverlayAnswer& answer) {
+void draw_body(HelpSheet& /*sheet*/, bool confirm, OverlayAnswer& answer) {
     if (ImGui::BeginTable("help", 2, ImGuiTableFlags_SizingFixedFit)) {
         for (const HelpLine& line : kHelp) {
             ImGui::TableNextRow();
@@ -48,17 +48,13 @@ void draw_body(HelpSheet& /*sheet*/, OverlayAnswer& answer) {
         ImGui::EndTable();
     }
     ImGui::Spacing();
-    answer.close = draw_wide_button("Close");
+    answer.close = draw_wide_button("Close") || confirm;
 }
 
-void draw_body(MessageBox& box, OverlayAnswer& answer) {
-    ImGui::PushTextWrapPos(30.0f * ImGui::GetFontSize());
-    ImGui::TextUnformatted(box.text.c_str());
-    ImGui::PopTextWrapPos();
+void draw_body(MessageBox& box, bool confirm, OverlayAnswer& answer) {
+    draw_text(box.text);
     ImGui::Spacing();
-    const bool enter = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter)) ||
-                       ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_KeyPadEnter));
-    answer.close = draw_wide_button("OK") || enter;
+    answer.close = draw_wide_button("OK") || confirm;
 }
 
 void draw_format_choice(std::string& name) {
@@ -85,15 +81,13 @@ std::string complaint_about(const PathDialog& dialog) {
     return dialog.purpose == PathDialog::Purpose::save ? save_complaint(dialog.name) : "";
 }
 
-void draw_body(PathDialog& dialog, OverlayAnswer& answer) {
+void draw_body(PathDialog& dialog, bool confirm, OverlayAnswer& answer) {
     const bool saving = dialog.purpose == PathDialog::Purpose::save;
     if (!dialog.subject.empty()) draw_text(dialog.subject);
-    ImGui::PushItemWidth(30.0f * ImGui::GetFontSize());
+    ImGui::PushItemWidth(-1.0f);
     if (dialog.fresh) ImGui::SetKeyboardFocusHere();
     dialog.fresh = false;
-    bool confirmed =
-        ImGui::InputText("##name", &dialog.name,
-                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    ImGui::InputText("##name", &dialog.name, ImGuiInputTextFlags_AutoSelectAll);
     ImGui::PopItemWidth();
     if (saving) {
         draw_format_choice(dialog.name);
@@ -101,7 +95,7 @@ void draw_body(PathDialog& dialog, OverlayAnswer& answer) {
     }
     if (!dialog.complaint.empty()) draw_error_text(dialog.complaint);
     ImGui::Spacing();
-    confirmed |= ImGui::Button(saving ? "Save" : "Open");
+    const bool confirmed = ImGui::Button(saving ? "Save" : "Open") || confirm;
     ImGui::SameLine();
     answer.close = ImGui::Button("Cancel");
     if (confirmed) {
@@ -110,7 +104,7 @@ void draw_body(PathDialog& dialog, OverlayAnswer& answer) {
     }
 }
 
-void draw_body(std::monostate& /*nothing*/, OverlayAnswer& /*answer*/) {}
+void draw_body(std::monostate& /*nothing*/, bool /*confirm*/, OverlayAnswer& /*answer*/) {}
 
 std::string title_of(const Overlay& overlay) {
     struct Titles {
@@ -137,7 +131,7 @@ std::string save_complaint(const std::string& name) {
     return "";
 }
 
-OverlayAnswer draw_overlay(Overlay& overlay) {
+OverlayAnswer draw_overlay(Overlay& overlay, bool confirm) {
     OverlayAnswer answer;
     const bool open = !std::holds_alternative<std::monostate>(overlay);
     // One popup for all of them: what follows ### is its identity.
@@ -146,13 +140,20 @@ OverlayAnswer draw_overlay(Overlay& overlay) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos(ImVec2(0.5f * screen.x, 0.5f * screen.y), ImGuiCond_Always,
                             ImVec2(0.5f, 0.5f));
-    constexpr ImGuiWindowFlags kFlags = ImGuiWindowFlags_AlwaysAutoResize |
-                                        ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
+    // As high as its content.
+    const float width = std::min(34.0f * ImGui::GetFontSize(), 0.95f * screen.x);
+    ImGui::SetNextWindowSize(ImVec2(width, 0.0f));
+    constexpr ImGuiWindowFlags kFlags = ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                                        ImGuiWindowFlags_NoCollapse |
                                         ImGuiWindowFlags_NoSavedSettings;
-    if (!ImGui::BeginPopupModal(title.c_str(), nullptr, kFlags)) return answer;
-    std::visit([&](auto& content) { draw_body(content, answer); }, overlay);
-    if (!open) ImGui::CloseCurrentPopup();
-    ImGui::EndPopup();
+    // A popup can only be closed from inside, in a frame that must not show it empty.
+    ImGui::PushStyleVar(ImGuiStyleVar_Alpha, open ? 1.0f : 0.0f);
+    if (ImGui::BeginPopupModal(title.c_str(), nullptr, kFlags)) {
+        std::visit([&](auto& content) { draw_body(content, confirm, answer); }, overlay);
+        if (!open) ImGui::CloseCurrentPopup();
+        ImGui::EndPopup();
+    }
+    ImGui::PopStyleVar();
     return answer;
 }
 

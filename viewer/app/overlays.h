@@ -36,7 +36,8 @@ struct OverlayAnswer {
 };
 
 // Draws what is open, if anything. Call in every frame, so that what was closed goes away.
-OverlayAnswer draw_overlay(Overlay& overlay);
+// `confirm`: Enter was pressed.
+OverlayAnswer draw_overlay(Overlay& overlay, bool confirm);
 
 // "" if a picture can be written to that name, else why not.
 std::string save_complaint(const std::string& name);

@@ -103,14 +103,14 @@ void SceneView::rasterise(ImageSize size) {
 }
 
 void SceneView::present(const ViewRect& view, int framebuffer_rows,
-                        std::span<const ObjectId> selected, ObjectId hovered) {
+                        std::span<const ObjectId> selected) {
     if (!shown_) return;
     if (shown_->traced) {
         presenter_.present(presenter_.colour_texture(), presenter_.object_texture(), view,
-                           framebuffer_rows, selected, hovered);
+                           framebuffer_rows, selected, kNoObject);
     } else {
         presenter_.present(rasterizer_.colour_texture(), rasterizer_.object_texture(), view,
-                           framebuffer_rows, selected, hovered);
+                           framebuffer_rows, selected, kNoObject);
     }
 }
 

@@ -40,8 +40,7 @@ public:
 
     // Makes the frame that present() shows: traced if `trace` says how and a picture is there.
     void prepare(ImageSize size, const RenderSettings* trace);
-    void present(const ViewRect& view, int framebuffer_rows, std::span<const ObjectId> selected,
-                 ObjectId hovered);
+    void present(const ViewRect& view, int framebuffer_rows, std::span<const ObjectId> selected);
 
     // What the last prepared frame shows; nothing if the view is empty.
     [[nodiscard]] const std::optional<ShownFrame>& shown() const { return shown_; }

@@ -1,7 +1,8 @@
 #include "viewer/app/window.h"
 
-#include <glad/gl.h>
-// glad first: it stands in for the system's GL headers.
+// Before GLFW: it stands in for the system's GL headers.
+#include "viewer/gl/load_gl.h"
+
 #include <GLFW/glfw3.h>
 
 #include <cmath>
@@ -62,6 +63,9 @@ std::optional<Key> key_of(int key, int scancode) {
             return Key::home;
         case GLFW_KEY_ESCAPE:
             return Key::escape;
+        case GLFW_KEY_ENTER:
+        case GLFW_KEY_KP_ENTER:
+            return Key::enter;
         case GLFW_KEY_TAB:
             return Key::tab;
         case GLFW_KEY_F1:
@@ -103,9 +107,11 @@ Window::Window(const std::string& title, ImageSize size, InputState& input)
     handle_ = glfwCreateWindow(size.cols, size.rows, title.c_str(), nullptr, nullptr);
     if (handle_ == nullptr) throw NoWindow(glfw_complaint());
     glfwMakeContextCurrent(handle_);
-    if (gladLoadGL(glfwGetProcAddress) == 0) {
+    try {
+        load_gl(glfwGetProcAddress);
+    } catch (const Error& error) {
         glfwDestroyWindow(handle_);
-        throw NoWindow("the OpenGL functions can't be loaded");
+        throw NoWindow(error.what());
     }
     glfwSwapInterval(1);
     glfwGetCursorPos(handle_, &cursor_.x, &cursor_.y);
