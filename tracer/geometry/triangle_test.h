@@ -9,6 +9,7 @@
 #include "tracer/geometry/shapes.h"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include <cmath>
@@ -77,6 +78,8 @@ inline std::optional<TriangleHit> intersect_triangle(const ShearedRay& ray, cons
     if (!(positive || negative)) return std::nullopt;
     const double determinant = ordered_sum(u, v, w);
     if (!(std::abs(determinant) > 0.0)) return std::nullopt;
+    // Corners on one line leave a determinant of rounding errors; this product is exact for floats.
+    if (glm::cross(b - a, c - a) == glm::dvec3(0.0)) return std::nullopt;
     const double scaled = ordered_sum(u * (ray.sz * pa[ray.kz]), v * (ray.sz * pb[ray.kz]),
                                       w * (ray.sz * pc[ray.kz]));
     TriangleHit hit;
