@@ -238,6 +238,30 @@ TEST(TriangleShape, DegenerateOnesAreNeverHit) {
     EXPECT_TRUE(ahead(Triangle{{0, 0, kNaN}, {1, 0, 0}, {0, 1, 0}}, ray).empty());
 }
 
+// Exactly collinear corners, in every direction and order, and rays aimed at the line they lie on.
+TEST(TriangleShape, CollinearCornersAreNeverHit) {
+    int hits = 0;
+    for (std::uint64_t seed = 0; seed < 100000; ++seed) {
+        Random random(seed);
+        // Corners on a grid, so that the third lies on the line of the first two to the last bit.
+        const auto on_grid = [&] {
+            return glm::dvec3(random.below(1000), random.below(1000), random.below(1000)) / 64.0;
+        };
+        const glm::dvec3 a = on_grid();
+        const glm::dvec3 step = on_grid() - a;
+        const glm::dvec3 b = a + step;
+        const glm::dvec3 c = a + (seed % 2 == 0 ? 2.0 : 0.5) * step;
+        const glm::dvec3 target = a + random.unit() * (b - a);
+        const Ray ray = ray_towards(glm::vec3(target + 20.0 * random.direction()), target);
+        const ObjectRay object_ray{glm::dvec3(ray.origin), glm::dvec3(ray.direction)};
+        hits += intersect(Triangle{a, b, c}, object_ray).count;
+        hits += intersect(Triangle{c, a, b}, object_ray).count;
+        const ObjectRay exact{target + 20.0 * random.direction(), glm::dvec3(0.0)};
+        hits += intersect(Triangle{b, a, c}, {exact.origin, target - exact.origin}).count;
+    }
+    EXPECT_EQ(hits, 0);
+}
+
 TEST(TriangleShape, RandomHitsLieOnTheTriangle) {
     for (const double s : kScales) {
         Random random(23);
