@@ -11,8 +11,11 @@ namespace raypick {
 
 namespace {
 
-// A polygon that needs this many corners clipped by force crosses itself everywhere.
+// A polygon that needs this many corners clipped by force crosses itself everywhere, and so does
+// one that needs this much work for each corner: the rest is fanned.
 constexpr int kMaxForced = 64;
+constexpr std::uint64_t kMaxWorkPerCorner = 1000;
+constexpr std::uint64_t kLittleWork = 10'000'000;
 
 // Twice the signed area; positive if a, b, c turn counter-clockwise.
 double area2(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
@@ -78,7 +81,8 @@ void PolygonSplitter::clip_ears() {
     std::uint32_t corner = 1;
     std::uint32_t tried = 0;
     int forced = 0;
-    while (left > 3) {
+    work_left_ = kLittleWork + kMaxWorkPerCorner * flat_.size();
+    while (left > 3 && work_left_ > 0) {
         if (is_ear(corner)) {
             clip(corner);
             --left;
@@ -154,7 +158,7 @@ double PolygonSplitter::turn(std::uint32_t corner) const {
     return area2(flat_[previous_[corner]], flat_[corner], flat_[next_[corner]]);
 }
 
-bool PolygonSplitter::is_ear(std::uint32_t corner) const {
+bool PolygonSplitter::is_ear(std::uint32_t corner) {
     if (!(turn(corner) > 0.0)) return false;
     const std::uint32_t a = previous_[corner];
     const std::uint32_t c = next_[corner];
@@ -163,6 +167,8 @@ bool PolygonSplitter::is_ear(std::uint32_t corner) const {
     for (int y = first.y; y <= last.y; ++y) {
         for (int x = first.x; x <= last.x; ++x) {
             const auto at = static_cast<std::size_t>(y * grid_size_ + x);
+            const std::uint64_t work = 1 + cell_begin_[at + 1] - cell_begin_[at];
+            work_left_ -= std::min(work, work_left_);
             for (std::uint32_t i = cell_begin_[at]; i < cell_begin_[at + 1]; ++i) {
                 if (blocks(cell_corners_[i], a, corner, c)) return false;
             }

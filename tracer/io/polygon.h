@@ -30,7 +30,7 @@ private:
     void link_corners();
     void build_grid();
     [[nodiscard]] double turn(std::uint32_t corner) const;
-    [[nodiscard]] bool is_ear(std::uint32_t corner) const;
+    [[nodiscard]] bool is_ear(std::uint32_t corner);
     [[nodiscard]] bool blocks(std::uint32_t reflex, std::uint32_t a, std::uint32_t b,
                               std::uint32_t c) const;
     [[nodiscard]] glm::ivec2 cell(const glm::dvec2& point) const;
@@ -44,6 +44,8 @@ private:
     std::vector<std::uint32_t> next_;
     std::vector<std::uint32_t> previous_;
     std::vector<char> clipped_;
+
+    std::uint64_t work_left_ = 0;  // cells and corners that may still be looked at
 
     // Only reflex corners can lie in an ear: they stand in a grid of cells.
     std::vector<std::uint32_t> cell_begin_;
