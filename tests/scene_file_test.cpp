@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <unistd.h>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
@@ -33,13 +34,13 @@ protected:
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
-    std::filesystem::path write(const std::string& name, const std::string& text) const {
+    void write(const std::string& name, const std::string& text) const {
         std::ofstream(folder_ / name, std::ios::binary) << text;
-        return folder_ / name;
     }
 
     [[nodiscard]] LoadedScene load(const std::string& text, const LoadOptions& options = {}) const {
-        return load_scene(write("scene.json", text), options);
+        write("scene.json", text);
+        return load_scene(folder_ / "scene.json", options);
     }
     // A scene with these objects, written as JSON.
     [[nodiscard]] Scene load_objects(const std::string& objects) const {
@@ -712,7 +713,7 @@ TEST_F(Schema, EveryKeyIsReadWithItsExample) {
     for (const std::string type : kTypes) {
         const Json& schema = definition(type);
         for (const auto& property : schema.at("properties").items()) {
-            SCOPED_TRACE(type + "/" + property.key());
+            SCOPED_TRACE(fmt::format("{}/{}", type, property.key()));
             Json value = smallest(schema);
             value[property.key()] = example(property.value());
             EXPECT_EQ(complaint(file_with(type, value).dump()), "no complaint");
@@ -724,7 +725,7 @@ TEST_F(Schema, EveryRequiredKeyIsMissed) {
     for (const std::string type : kTypes) {
         const Json& schema = definition(type);
         for (const std::string key : schema.value("required", Json::array())) {
-            SCOPED_TRACE(type + "/" + key);
+            SCOPED_TRACE(fmt::format("{}/{}", type, key));
             Json value = smallest(schema);
             value.erase(key);
             EXPECT_THAT(complaint(file_with(type, value).dump()),
@@ -817,7 +818,7 @@ TEST(Assets, TheFarSiteIsFarAndKeepsAHandsWidth) {
     const auto centre = [&scene](const std::string& name) {
         for (const Object& object : scene.objects) {
             if (object.name != name) continue;
-            const Sphere& sphere = std::get<Sphere>(object.shape);
+            const auto& sphere = std::get<Sphere>(object.shape);
             return object.world_from_object.point(sphere.centre);
         }
         throw Error("there is no " + name);

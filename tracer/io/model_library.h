@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace raypick {
@@ -22,8 +23,8 @@ struct ModelPiece {
 class ModelLibrary {
 public:
     // Meshes, materials and warnings of the models go to `target`, which must outlive this.
-    ModelLibrary(LoadedScene& target, const LoadOptions& options)
-        : target_(&target), options_(options) {}
+    ModelLibrary(LoadedScene& target, LoadOptions options)
+        : target_(&target), options_(std::move(options)) {}
 
     // For the progress: how many different files will be asked for.
     void expect(std::size_t file_count) { expected_ = file_count; }
