@@ -213,6 +213,35 @@ TEST(Accel, EqualsBruteForceFarFromTheOrigin) {
     expect_brute(scene, 10, 3000);
 }
 
+// From so far that a ray's float rounding is as big as the triangles it is aimed at: the tree must
+// not leave out what the exact test would hit.
+TEST(Accel, EqualsBruteForceFromFarAway) {
+    for (const double distance : {1e2, 1e4, 1e6}) {
+        for (const bool instanced : {false, true}) {
+            SCOPED_TRACE(distance);
+            SCOPED_TRACE(instanced);
+            const Transform world_from_object =
+                instanced ? rotate(33.0, {1, 2, 3}) * scale({1.0, 0.7, 1.9}) : Transform{};
+            Scene scene;
+            place_mesh(scene, soup_data(5, 2000, 0.02), kNoMaterial, world_from_object);
+            const Accel accel = accel_of(scene);
+            const BruteForce brute(scene);
+            const Mesh& mesh = scene.meshes[0];
+            Random random(6);
+            for (int i = 0; i < 2000; ++i) {
+                const glm::uvec3 t = mesh.triangles[random.below(mesh.triangles.size())];
+                const glm::dvec3 middle =
+                    (glm::dvec3(mesh.positions[t.x]) + glm::dvec3(mesh.positions[t.y]) +
+                     glm::dvec3(mesh.positions[t.z])) /
+                    3.0;
+                const glm::vec3 from(distance * random.direction());
+                expect_brute(accel, brute, ray_towards(from, world_from_object.point(middle)));
+                if (HasFailure()) return;
+            }
+        }
+    }
+}
+
 TEST(Accel, EqualsBruteForceOnRaysThroughVerticesAndEdges) {
     Scene scene;
     place_mesh(scene, ball_data(3));

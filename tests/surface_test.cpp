@@ -62,6 +62,33 @@ TEST(SurfacePoint, NormalsUnderNonUniformAndMirroredScale) {
     }
 }
 
+TEST(SurfacePoint, NormalsUnderStretchAndTurnArePerpendicular) {
+    const Transform world_from_object = rotate(35.0, {1, 2, 3}) * scale({2.0, 0.5, -1.0});
+    for (const bool mesh : {false, true}) {
+        Scene scene;
+        if (mesh) {
+            place_mesh(scene, ball_data(3), kNoMaterial, world_from_object);
+        } else {
+            place(scene, Sphere{}, kNoMaterial, world_from_object);
+        }
+        const Accel accel = accel_of(scene);
+        Random random(2);
+        for (int i = 0; i < 200; ++i) {
+            const Ray ray = ray_towards(glm::vec3(6.0 * random.direction()), {0, 0, 0});
+            const SurfacePoint point = first_surface(accel, ray);
+            const glm::dvec3 normal(point.geometric_normal);
+            EXPECT_GT(glm::dot(normal, glm::dvec3(point.position)), 0.0) << "outwards";
+            if (mesh) continue;
+            // Two tangents of the unit ball, carried into the world.
+            const glm::dvec3 p =
+                inverse(world_from_object).value().point(glm::dvec3(point.position));
+            const glm::dvec3 u = glm::normalize(glm::cross(p, glm::dvec3(0.3, 0.5, 0.7)));
+            EXPECT_NEAR(glm::dot(normal, world_from_object.vector(u)), 0.0, 2e-6);
+            EXPECT_NEAR(glm::dot(normal, world_from_object.vector(glm::cross(p, u))), 0.0, 2e-6);
+        }
+    }
+}
+
 TEST(SurfacePoint, ShadingNormalsAreInterpolated) {
     MeshData data;
     data.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
