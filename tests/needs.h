@@ -28,11 +28,11 @@ inline std::filesystem::path asset(const std::string& relative) {
 }  // namespace raypick
 
 // Skips (in CI: fails) the running test, with the reason, unless `condition` holds.
-#define RAYPICK_REQUIRE(condition, reason)                          \
-    if (!(condition)) {                                             \
+#define RAYPICK_REQUIRE(condition, reason)                            \
+    if (!(condition)) {                                               \
         if (raypick::in_ci()) FAIL() << "needed in CI: " << (reason); \
         GTEST_SKIP() << (reason);                                     \
-    }                                                               \
+    }                                                                 \
     static_assert(true)
 
 // The same for a real model.
