@@ -435,6 +435,10 @@ TEST_F(CommandTest, TheImageDoesNotDependOnTheNumberOfThreads) {
     EXPECT_EQ(one, image("--threads=0"));
 }
 
+TEST_F(CommandTest, AnImageThatNoMemoryHoldsIsRefused) {
+    expect_refusal(run_program(render({"--resolution=65535,65535", "--output=-"})), 1, "memory");
+}
+
 // Found before the file is even read.
 TEST_F(CommandTest, AnOutputThatCanNotBeWrittenIsFoundFirst) {
     folder_.write("folder.png", "");

@@ -18,7 +18,7 @@ Interrupt::Interrupt() {
 
 Interrupt::~Interrupt() {
     ending_ = true;
-    pthread_kill(watcher_.native_handle(), SIGTERM);  // wakes the watcher
+    pthread_kill(watcher_.native_handle(), SIGINT);  // wakes the watcher
     watcher_.join();
     pthread_sigmask(SIG_SETMASK, &old_mask_, nullptr);
 }

@@ -11,6 +11,7 @@
 #include "viewer/raster/rasterizer.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <thread>
@@ -30,7 +31,7 @@ struct Frame {
 
 void show_progress(const RenderJob& job, ProgressBar& bar) {
     for (RenderProgress progress = job.progress(); !progress.finished; progress = job.progress()) {
-        const double rays = static_cast<double>(progress.rays.total());
+        const auto rays = static_cast<double>(progress.rays.total());
         const double mega_rays_per_second =
             progress.seconds > 0.0 ? 1e-6 * rays / progress.seconds : 0.0;
         bar.show("tracing", progress.fraction,
@@ -126,9 +127,24 @@ void render_to(const RenderOutput& output, const RenderCommand& command,
     standard_output.flush();
 }
 
+// The tracer's image, a copy to write and the file's bytes. Found before loading, because asking
+// for too much memory may end in a process being killed instead of in an error.
+void check_memory(ImageSize size) {
+    constexpr double kBytesPerPixel = 80.0;
+    const double needed = kBytesPerPixel * static_cast<double>(size.pixel_count());
+    const double installed =
+        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    if (needed <= installed) return;
+    throw Error(
+        fmt::format("an image of {} x {} pixels needs {:.0f} GB of memory, this machine "
+                    "has {:.0f} GB; ask for a smaller --resolution",
+                    size.cols, size.rows, 1e-9 * needed, 1e-9 * installed));
+}
+
 }  // namespace
 
 int run_render(const RenderCommand& command) {
+    check_memory(command.size);
     const RenderOutput output(command.output);
     const Interrupt interrupt;
     try {
