@@ -266,8 +266,7 @@ TEST(Accel, RaysWithZeroComponentsAndStartsOnBoxes) {
     Scene scene;
     MeshData data;
     for (std::uint32_t i = 0; i < 27; ++i) {
-        const glm::vec3 at(static_cast<float>(i % 3), static_cast<float>(i / 3 % 3),
-                           static_cast<float>(i / 9));
+        const glm::vec3 at(glm::uvec3(i % 3, i / 3 % 3, i / 9));
         const auto base = static_cast<std::uint32_t>(data.positions.size());
         for (const glm::vec3& p : octahedron_data().positions) {
             data.positions.push_back(at + 0.5f * p);

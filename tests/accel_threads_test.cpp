@@ -45,12 +45,13 @@ TEST(AccelThreads, ManyThreadsMayAskAtOnce) {
     std::atomic<int> wrong{0};
     {
         std::vector<std::jthread> threads;
+        threads.reserve(8);
         for (int i = 0; i < 8; ++i) {
             threads.emplace_back([&, i] {
                 std::vector<Hit> hits(rays.size());
                 accel.intersect(rays, hits);
                 if (hits != wanted) ++wrong;
-                for (std::size_t r = static_cast<std::size_t>(i); r < rays.size(); r += 8) {
+                for (auto r = static_cast<std::size_t>(i); r < rays.size(); r += 8) {
                     if (accel.intersect(rays[r]).value_or(Hit{}) != wanted[r]) ++wrong;
                     if (accel.occluded(rays[r]) != wanted[r].valid()) ++wrong;
                     if (accel.intersect_all(rays[r]).empty() == wanted[r].valid()) ++wrong;

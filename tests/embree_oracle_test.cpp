@@ -121,7 +121,8 @@ private:
     RTCScene scene_;
 };
 
-enum Verdict { equal, rounding, edge, unexplained, kVerdicts };
+enum Verdict { equal, rounding, edge, unexplained };
+constexpr std::size_t kVerdicts = 4;
 
 class Comparison {
 public:

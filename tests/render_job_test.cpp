@@ -334,6 +334,7 @@ TEST(RenderJob, SeveralAtOnce) {
     const auto accel = shared_accel(mixed_scene());
     const Image wanted = render(accel, mixed_camera(), {64, 96}, {}).image;
     std::vector<std::unique_ptr<RenderJob>> jobs;
+    jobs.reserve(4);
     for (int i = 0; i < 4; ++i) {
         jobs.push_back(std::make_unique<RenderJob>(accel, mixed_camera(), ImageSize{64, 96},
                                                    RenderSettings{}));

@@ -75,7 +75,7 @@ inline MeshData subdivided(const MeshData& coarse) {
             std::minmax(a, b), static_cast<std::uint32_t>(fine.positions.size()));
         if (fresh) {
             const glm::dvec3 sum = glm::dvec3(fine.positions[a]) + glm::dvec3(fine.positions[b]);
-            fine.positions.push_back(glm::vec3(glm::normalize(sum)));
+            fine.positions.emplace_back(glm::normalize(sum));
         }
         return at->second;
     };
