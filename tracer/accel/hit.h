@@ -43,8 +43,8 @@ class AcceptHit {
 public:
     AcceptHit() = default;
     template <typename F>
-    requires(!std::is_same_v<std::remove_cvref_t<F>, AcceptHit>) AcceptHit(
-        const F& callable)  // NOLINT(google-explicit-constructor): a reference, like a span
+    // A reference, like a span. NOLINTNEXTLINE(google-explicit-constructor)
+    requires(!std::is_same_v<std::remove_cvref_t<F>, AcceptHit>) AcceptHit(const F& callable)
         : context_(&callable), call_([](const void* context, const Hit& hit) -> bool {
               return (*static_cast<const F*>(context))(hit);
           }) {}

@@ -71,10 +71,12 @@ void parallel_for(std::size_t count, int threads, const std::stop_token& stop,
         loop.work();
     } else {
 #ifdef RAYPICK_THREADS_TBB
-        tbb::task_arena arena(static_cast<int>(workers));
+        // TBB has no more workers than cores, and says so on standard error if asked for more.
+        const std::size_t slots = std::min(workers, static_cast<std::size_t>(hardware_threads()));
+        tbb::task_arena arena(static_cast<int>(slots));
         arena.execute([&] {
             tbb::parallel_for(
-                std::size_t{0}, workers, [&](std::size_t) { loop.work(); },
+                std::size_t{0}, slots, [&](std::size_t) { loop.work(); },
                 tbb::simple_partitioner());
         });
 #else

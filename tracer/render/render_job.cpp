@@ -250,7 +250,8 @@ RenderProgress RenderJob::progress() const {
     progress.rays = state_->rays;
     progress.version = state_->version;
     progress.finished = state_->finished;
-    progress.cancelled = state_->finished && state_->done_count < state_->done.size();
+    progress.cancelled =
+        state_->finished && !state_->failure && state_->done_count < state_->done.size();
     return progress;
 }
 
