@@ -105,12 +105,13 @@ private:
         if (roots_) return *roots_;
         roots_.emplace();
         const std::optional<JsonValue> scenes = document_.root().find("scenes");
-        if (!scenes) {
+        const std::optional<JsonValue> shown = document_.root().find("scene");
+        if (!scenes && !shown) {
             find_parentless();
             return *roots_;
         }
-        const std::vector<JsonValue> all = scenes->elements();
-        const std::optional<JsonValue> shown = document_.root().find("scene");
+        std::vector<JsonValue> all;
+        if (scenes) all = scenes->elements();
         const std::uint64_t number = shown ? whole_number(*shown) : 0;
         if (number >= all.size()) {
             (shown ? *shown : *scenes).fail(fmt::format("scene {} does not exist", number));
@@ -133,6 +134,9 @@ private:
         }
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             if (!is_child[i]) roots_->push_back(i);
+        }
+        if (roots_->empty() && !nodes.empty()) {
+            document_.root().need("nodes").fail("every node is a child: they must form trees");
         }
     }
 
