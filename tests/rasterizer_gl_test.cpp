@@ -20,11 +20,11 @@ namespace {
 
 constexpr ImageSize kSize{211, 317};  // odd and not square
 
-Object shape_object(const char* name, Shape shape, const Transform& place = {},
+Object shape_object(const char* name, const Shape& shape, const Transform& place = {},
                     MaterialId material = kNoMaterial) {
     Object object;
     object.name = name;
-    object.shape = std::move(shape);
+    object.shape = shape;
     object.world_from_object = place;
     object.material = material;
     return object;

@@ -6,29 +6,45 @@
 #include <fmt/format.h>
 #include <glm/gtc/type_ptr.hpp>
 
-#include <regex>
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <sstream>
+#include <vector>
 
 namespace raypick {
 
 namespace {
 
-// "0:12(3): error" (Mesa) and "0(12) : error" (NVIDIA) become "surface.frag:12(3): error".
+// A number at the beginning of `text`, which is then cut off; nothing if there is none.
+std::optional<std::size_t> take_number(std::string_view& text) {
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc()) return std::nullopt;
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    return number;
+}
+
+// "0:12(3): error" (Mesa) and "0(12) : error" (NVIDIA) become "surface.frag:12...". Other lines
+// stay as they are.
+std::string with_file_name(std::string_view line, const std::vector<std::string>& files) {
+    std::string_view rest = line;
+    const auto file = take_number(rest);
+    if (!file || *file >= files.size() || rest.empty()) return std::string(line);
+    const bool in_brackets = rest.front() == '(';
+    if (!in_brackets && rest.front() != ':') return std::string(line);
+    rest.remove_prefix(1);
+    const auto number = take_number(rest);
+    if (!number) return std::string(line);
+    if (in_brackets && !rest.empty()) rest.remove_prefix(1);
+    return fmt::format("{}:{}{}", files[*file], *number, rest);
+}
+
 std::string with_file_names(const std::string& log, const std::vector<std::string>& files) {
-    static const std::regex place(R"(^(\d+)(?::|\()(\d+)\)?)");
+    std::istringstream lines(log);
     std::string result;
-    std::size_t begin = 0;
-    while (begin < log.size()) {
-        const std::size_t end = std::min(log.find('\n', begin), log.size());
-        std::string line = log.substr(begin, end - begin);
-        std::smatch match;
-        if (std::regex_search(line, match, place)) {
-            const std::size_t number = std::stoul(match[1].str());
-            if (number < files.size()) {
-                line = files[number] + ":" + match[2].str() + match.suffix().str();
-            }
-        }
-        result += line + "\n";
-        begin = end + 1;
+    for (std::string line; std::getline(lines, line);) {
+        result += with_file_name(line, files) + "\n";
     }
     return result;
 }
@@ -45,9 +61,10 @@ Shader compile(GLenum type, std::string_view file, std::span<const std::string> 
     GLint length = 0;
     glGetShaderiv(shader.name(), GL_INFO_LOG_LENGTH, &length);
     std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
-    glGetShaderInfoLog(shader.name(), length, nullptr, log.data());
-    throw Error(fmt::format("shader {} does not compile:\n{}", file,
-                            with_file_names(log.c_str(), source.files)));
+    glGetShaderInfoLog(shader.name(), length, &length, log.data());
+    log.resize(static_cast<std::size_t>(length));
+    throw Error(
+        fmt::format("shader {} does not compile:\n{}", file, with_file_names(log, source.files)));
 }
 
 }  // namespace
@@ -68,9 +85,9 @@ Program make_program(std::string_view vertex_file, std::string_view fragment_fil
     GLint length = 0;
     glGetProgramiv(program.name(), GL_INFO_LOG_LENGTH, &length);
     std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
-    glGetProgramInfoLog(program.name(), length, nullptr, log.data());
-    throw Error(
-        fmt::format("shaders {} and {} do not link:\n{}", vertex_file, fragment_file, log.c_str()));
+    glGetProgramInfoLog(program.name(), length, &length, log.data());
+    log.resize(static_cast<std::size_t>(length));
+    throw Error(fmt::format("shaders {} and {} do not link:\n{}", vertex_file, fragment_file, log));
 }
 
 Uniforms::Uniforms(const Program& program) : program_(program.name()) {

@@ -45,10 +45,10 @@ struct Egl {
     }
 };
 
-bool initialise(const Egl& egl, Display display) {
-    const auto eglInitialize =
+bool initialised(const Egl& egl, Display display) {
+    const auto initialize =
         egl.core<unsigned (*)(Display, std::int32_t*, std::int32_t*)>("eglInitialize");
-    return display != nullptr && eglInitialize(display, nullptr, nullptr) != 0;
+    return display != nullptr && initialize(display, nullptr, nullptr) != 0;
 }
 
 // Mesa's surfaceless platform, else the first device that works (NVIDIA's driver).
@@ -61,10 +61,10 @@ Display open_display(const Egl& egl) {
     std::int32_t count = 0;
     if (query_devices == nullptr || query_devices(16, devices, &count) == 0) count = 0;
     Display display = get(kPlatformSurfacelessMesa, nullptr, nullptr);
-    if (initialise(egl, display)) return display;
+    if (initialised(egl, display)) return display;
     for (std::int32_t i = 0; i < count; ++i) {
         display = get(kPlatformDeviceExt, devices[i], nullptr);
-        if (initialise(egl, display)) return display;
+        if (initialised(egl, display)) return display;
     }
     throw NoOpenGL("neither the surfaceless platform nor a device works");
 }

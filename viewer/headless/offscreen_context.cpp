@@ -11,6 +11,7 @@ namespace raypick {
 
 struct OffscreenContext::State {
     std::variant<std::monostate, OsmesaContext, EglContext> context;
+    std::string description;
 };
 
 namespace {
@@ -32,6 +33,7 @@ OffscreenContext::OffscreenContext(OffscreenBackend backend) : state_(std::make_
     if (wanted != OffscreenBackend::egl) {
         try {
             state_->context.emplace<OsmesaContext>();
+            state_->description = gl_description();
             return;
         } catch (const Error& error) {
             tried = std::string("OSMesa: ") + error.what();
@@ -40,6 +42,7 @@ OffscreenContext::OffscreenContext(OffscreenBackend backend) : state_(std::make_
     if (wanted != OffscreenBackend::osmesa) {
         try {
             state_->context.emplace<EglContext>();
+            state_->description = gl_description();
             return;
         } catch (const Error& error) {
             if (!tried.empty()) tried += "; ";
@@ -53,7 +56,7 @@ OffscreenContext::OffscreenContext(OffscreenBackend backend) : state_(std::make_
 OffscreenContext::~OffscreenContext() = default;
 
 std::string OffscreenContext::description() const {
-    return gl_description();
+    return state_->description;
 }
 
 }  // namespace raypick

@@ -10,7 +10,7 @@ namespace raypick {
 class SharedLibrary {
 public:
     // Opens the first of `names` that is there. Throws NoOpenGL that says why none is.
-    explicit SharedLibrary(std::initializer_list<const char*> names);
+    SharedLibrary(std::initializer_list<const char*> names);
 
     // The function `name`; throws NoOpenGL if the library lacks it.
     template <typename Function>

@@ -79,6 +79,16 @@ private:
     }
 };
 
+void draw_objects(const std::array<Program, kShapeKinds>& programs, const ViewNumbers& view,
+                  std::span<const DrawnObject* const> objects) {
+    for (const DrawnObject* object : objects) {
+        const Uniforms uniforms(programs[object->shape.index()]);
+        uniforms.set("object_id", object->id);
+        uniforms.set("object_material", object->material);
+        std::visit(ShapeDraw{view, *object, uniforms}, object->shape);
+    }
+}
+
 // What every pass wants; others (the UI) may have left something else.
 void set_state() {
     for (const GLenum capability : {GL_BLEND, GL_SCISSOR_TEST, GL_CULL_FACE, GL_DEPTH_TEST,
@@ -116,8 +126,6 @@ struct Rasterizer::State {
     FrameBuffers frame;
 
     void reload_changed_shaders();
-    void draw_objects(const std::array<Program, kShapeKinds>& programs, const ViewNumbers& view,
-                      std::span<const DrawnObject* const> objects) const;
     void depth_pass(const ViewNumbers& view, std::span<const DrawnObject* const> objects) const;
     void surface_pass(const ViewNumbers& view, std::span<const DrawnObject* const> objects,
                       TieRule ties) const;
@@ -130,17 +138,6 @@ void Rasterizer::State::reload_changed_shaders() {
         shaders = make_shader_set();
     } catch (const Error& error) {
         fmt::print(stderr, "raypick: {}\n", error.what());  // the developer's; the old ones stay
-    }
-}
-
-void Rasterizer::State::draw_objects(const std::array<Program, kShapeKinds>& programs,
-                                     const ViewNumbers& view,
-                                     std::span<const DrawnObject* const> objects) const {
-    for (const DrawnObject* object : objects) {
-        const Uniforms uniforms(programs[object->shape.index()]);
-        uniforms.set("object_id", object->id);
-        uniforms.set("object_material", object->material);
-        std::visit(ShapeDraw{view, *object, uniforms}, object->shape);
     }
 }
 
