@@ -36,8 +36,10 @@ bool names_display(const char* variable) {
     return text.rfind("DISPLAY=", 0) == 0 || text.rfind("WAYLAND_DISPLAY=", 0) == 0;
 }
 
-std::vector<char*> environment_without_display() {
+// `display` as in "DISPLAY=:1", or empty; it must outlive the result.
+std::vector<char*> environment_with(std::string& display) {
     std::vector<char*> variables;
+    if (!display.empty()) variables.push_back(display.data());
     for (char** variable = environ; *variable != nullptr; ++variable) {
         if (!names_display(*variable)) variables.push_back(*variable);
     }
@@ -118,6 +120,9 @@ RunningProgram::RunningProgram(const std::vector<std::string>& arguments, const 
     }
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, error_file_.c_str(),
                                      O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    if (!files.folder.empty()) {
+        posix_spawn_file_actions_addchdir_np(&actions, files.folder.c_str());
+    }
 
     std::vector<std::string> words = {RAYPICK_PROGRAM};
     words.insert(words.end(), arguments.begin(), arguments.end());
@@ -125,8 +130,9 @@ RunningProgram::RunningProgram(const std::vector<std::string>& arguments, const 
     for (std::string& word : words)
         argv.push_back(word.data());
     argv.push_back(nullptr);
+    std::string display = files.display.empty() ? "" : "DISPLAY=" + files.display;
     const int failure = ::posix_spawn(&process_, RAYPICK_PROGRAM, &actions, nullptr, argv.data(),
-                                      environment_without_display().data());
+                                      environment_with(display).data());
     posix_spawn_file_actions_destroy(&actions);
     close_once(input.read_end);
     close_once(output.write_end);
@@ -221,7 +227,9 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const Progr
 
 ProgramResult run_program_on(const std::vector<std::string>& arguments, const std::string& input) {
     const TemporaryFolder folder;
-    return run_program(arguments, {folder.write("input", input), {}});
+    ProgramFiles files;
+    files.in = folder.write("input", input);
+    return run_program(arguments, files);
 }
 
 }  // namespace raypick

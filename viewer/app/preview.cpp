@@ -13,6 +13,9 @@ constexpr std::chrono::milliseconds kUploadInterval{80};
 }  // namespace
 
 void Preview::want(const PreviewView& view) {
+    if (cancelled_ == view) return;
+    cancelled_.reset();
+    wanted_ = view;
     const bool have_job = job_ || !error_.empty();
     if (have_job && job_view_ == view) return;
     const bool may_replace = !job_ || job_shown() || job_ended_ || job_view_.accel != view.accel;
@@ -31,7 +34,14 @@ void Preview::start(const PreviewView& view) {
 }
 
 void Preview::cancel() {
-    if (job_) job_->cancel();
+    if (!job_) return;
+    job_->cancel();
+    cancelled_ = wanted_;
+}
+
+const PreviewView* Preview::shown() const {
+    if (!shown_ || (cancelled_ && *cancelled_ != *shown_)) return nullptr;
+    return &*shown_;
 }
 
 void Preview::close() {
@@ -41,6 +51,8 @@ void Preview::close() {
     shown_job_.reset();
     image_ = {};
     job_view_ = {};
+    wanted_ = {};
+    cancelled_.reset();
 }
 
 void Preview::retire() {

@@ -36,7 +36,8 @@ public:
     // Asks for a picture of this view. A running job of another view is replaced as soon as its
     // first coarse picture is there, so that a moving camera is shown, too.
     void want(const PreviewView& view);
-    // Ends the running job; its picture so far stays.
+    // Ends the running job; its picture so far stays, and nothing starts until another view is
+    // wanted.
     void cancel();
     // Ends the job and forgets its picture.
     void close();
@@ -44,9 +45,11 @@ public:
     // upload was just before.
     void update(Presenter& presenter, bool at_once = false);
 
-    // The picture on the GPU and the view that it shows; nullptr if there is none.
-    [[nodiscard]] const Image* image() const { return shown_ ? &image_ : nullptr; }
-    [[nodiscard]] const PreviewView* shown() const { return shown_ ? &*shown_ : nullptr; }
+    // The view that the picture on the GPU shows; nullptr if there is none, or if it was cancelled
+    // on the way to another view.
+    [[nodiscard]] const PreviewView* shown() const;
+    // That picture.
+    [[nodiscard]] const Image& image() const { return image_; }
     // The pixel whose sample is shown at `pixel`.
     [[nodiscard]] Pixel shown_pixel(Pixel pixel) const;
 
@@ -65,7 +68,9 @@ private:
 
     std::shared_ptr<RenderJob> job_;
     PreviewView job_view_;
-    bool job_ended_ = false;  // and wait() has been asked for its error
+    PreviewView wanted_;
+    std::optional<PreviewView> cancelled_;  // the view that was wanted then
+    bool job_ended_ = false;                // and wait() has been asked for its error
     std::uint64_t version_ = 0;
     std::string error_;
     std::vector<std::shared_ptr<RenderJob>> retired_;  // cancelled, their threads still ending

@@ -78,10 +78,12 @@ void SceneView::prepare(ImageSize size, const RenderSettings* trace) {
     camera_.fit_to_scene(accel_->bounds());
     if (trace != nullptr) {
         preview_.want({accel_, camera_.camera(), size, *trace});
+        if (cancel_wanted_) preview_.cancel();
         preview_.update(presenter_);
     } else {
         preview_.close();
     }
+    cancel_wanted_ = false;
     if (shows_trace(size)) {
         shown_ = ShownFrame{accel_, preview_.shown()->camera, size, true};
     } else {
@@ -124,7 +126,7 @@ Image SceneView::picture() {
     if (!shown_) return {};
     if (!shown_->traced) return rasterizer_.read_image();
     preview_.update(presenter_, true);
-    return *preview_.image();
+    return preview_.image();
 }
 
 bool SceneView::awaits_first_picture() const {

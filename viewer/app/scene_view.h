@@ -50,7 +50,8 @@ public:
     [[nodiscard]] Image picture();
 
     [[nodiscard]] PreviewStatus trace_status() const { return preview_.status(); }
-    void cancel_trace() { preview_.cancel(); }
+    // Ends the tracing of whatever the next prepare() would trace.
+    void cancel_trace() { cancel_wanted_ = true; }
     // A traced picture is on its way.
     [[nodiscard]] bool busy() const { return preview_.busy(); }
     [[nodiscard]] bool awaits_first_picture() const;
@@ -64,6 +65,7 @@ private:
     Rasterizer rasterizer_;
     Presenter presenter_;
     Preview preview_;
+    bool cancel_wanted_ = false;
     std::optional<ShownFrame> rasterised_;  // what the rasteriser's buffers hold
     std::optional<ShownFrame> shown_;
 };

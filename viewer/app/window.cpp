@@ -176,10 +176,18 @@ void Window::on_key(int key, int scancode, int action, int mods) {
         input_.key(*ours, modifiers_of(mods));
 }
 
+// GLFW 3.3 on X11 takes a motion to exactly (0, 0) for an echo of its own and does not report it.
+void Window::notice_corner() {
+    Cursor now;
+    glfwGetCursorPos(handle_, &now.x, &now.y);
+    if (now == Cursor{0.0, 0.0}) cursor_ = now;
+}
+
 void Window::on_button(int button, int action, int mods) {
     touched_ = true;
     const std::optional<MouseButton> ours = mouse_button(button);
     if (!ours) return;
+    notice_corner();
     if (action == GLFW_PRESS) {
         input_.press(*ours, cursor_at(), modifiers_of(mods));
     } else {

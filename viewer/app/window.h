@@ -54,6 +54,7 @@ public:
 private:
     void install_callbacks();
     [[nodiscard]] CursorAt cursor_at() const { return {cursor_, metrics()}; }
+    void notice_corner();
     void on_key(int key, int scancode, int action, int mods);
     void on_button(int button, int action, int mods);
 
