@@ -45,21 +45,41 @@ bool is_selected(uint id) {
     return low < selected_count && texelFetch(selected, low).r == id;
 }
 
-// 2 next to a selected object, 1 next to the hovered one, else 0. Beyond the view's edges there is
-// nothing to outline.
+// The object at a neighbour. Beyond the view's edge that is the last one before it, which is no
+// farther away.
+uint neighbour(vec2 pixel, int x, int y) {
+    return object_at(clamp(pixel + vec2(x, y), vec2(0.5), view_size - 0.5));
+}
+
+// Half the length of a row of the disc of neighbours.
+int half_row(int y) {
+    return int(sqrt(outline_width * outline_width - float(y * y)));
+}
+
+// Whether all neighbours show the same object. A loop of its own, since most pixels go no farther.
+bool uniform_around(vec2 pixel, uint here) {
+    int reach = int(outline_width);
+    bool same = true;
+    for (int y = -reach; y <= reach; ++y) {
+        int row = half_row(y);
+        for (int x = -row; x <= row; ++x) same = same && neighbour(pixel, x, y) == here;
+    }
+    return same;
+}
+
+// 2 next to a selected object, 1 next to the hovered one, else 0.
 int outline(vec2 pixel) {
     uint here = object_at(pixel);
-    int reach = int(ceil(outline_width));
+    if (uniform_around(pixel, here)) return 0;
+    int reach = int(outline_width);
     int found = 0;
-    for (int y = -reach; y <= reach; ++y) {
-        for (int x = -reach; x <= reach; ++x) {
-            vec2 other = pixel + vec2(x, y);
-            if (float(x * x + y * y) > outline_width * outline_width) continue;
-            if (any(lessThan(other, vec2(0.0))) || any(greaterThanEqual(other, view_size))) continue;
-            uint id = object_at(other);
+    for (int y = -reach; y <= reach && found < 2; ++y) {
+        int row = half_row(y);
+        for (int x = -row; x <= row && found < 2; ++x) {
+            uint id = neighbour(pixel, x, y);
             if (id == here || id == kNoObject) continue;
-            if (is_selected(id)) return 2;
             if (id == hovered) found = 1;
+            if (is_selected(id)) found = 2;
         }
     }
     return found;
