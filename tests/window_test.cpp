@@ -264,8 +264,10 @@ TEST_F(WindowTest, HiddenPanelsLeaveTheWholeWindowToTheView) {
 TEST_F(WindowTest, AFileThatCannotBeReadIsShownAndTheWindowGoesOn) {
     start(folder_ / "nothing.obj");
     ASSERT_TRUE(desktop_->wait_for_title("raypick - error"));
+    const auto message = desktop_->screenshot();
     desktop_->key("Return");
     ASSERT_TRUE(desktop_->wait_for_title("raypick"));
+    EXPECT_TRUE(desktop_->wait_for_change(message)) << "there was no message to go away";
     desktop_->key("ctrl+o");
     ASSERT_TRUE(desktop_->wait_for_title("raypick - open"));
     desktop_->type(scene_.string());

@@ -14,7 +14,7 @@ namespace raypick {
 
 namespace {
 
-// ImGui needs a few frames to answer an event: hover, press, lay out.
+// ImGui needs a few frames to answer an event: hover, press, lay out, show.
 constexpr int kSettlingFrames = 3;
 // Dragging over the view's whole height turns by half a turn.
 constexpr double kOrbitRadians = std::numbers::pi;
@@ -36,20 +36,24 @@ App::App(const ViewOptions& options, Window& window, InputState& input)
       trace_(options.trace) {
     settings_.depth = options.depth;
     layout_ = lay_out(window_.metrics(), ui_scale_, panels_);
+    settle();
     if (!options.file.empty()) open(options.file);
 }
 
 void App::run() {
-    int frames_due = kSettlingFrames;
     while (!quit_ && !window_.close_wanted()) {
-        if (window_.wait(frames_due > 0 ? 0.0 : patience())) frames_due = kSettlingFrames;
-        if (working() || ui_.typing()) frames_due = std::max(frames_due, 1);
-        if (frames_due == 0) continue;
-        --frames_due;
+        if (window_.wait(frames_due_ > 0 ? 0.0 : patience())) settle();
+        if (working() || ui_.typing()) frames_due_ = std::max(frames_due_, 1);
+        if (frames_due_ == 0) continue;
+        --frames_due_;
         step();
     }
     // What still runs is given up; nobody should have to watch it end.
     window_.hide();
+}
+
+void App::settle() {
+    frames_due_ = kSettlingFrames;
 }
 
 bool App::working() const {
@@ -91,6 +95,7 @@ void App::open(const std::filesystem::path& file) {
 
 void App::take_results() {
     if (std::optional<OpenResult> result = opener_.take_result()) {
+        settle();
         if (auto* document = std::get_if<Document>(&*result)) {
             take(std::move(*document));
         } else {
@@ -98,6 +103,7 @@ void App::take_results() {
         }
     }
     if (const std::optional<SaveResult> result = saver_.take_result()) {
+        settle();
         if (result->error.empty()) {
             message_ = fmt::format("Saved {}", result->file.string());
         } else {

@@ -34,6 +34,8 @@ private:
     };
 
     void step();
+    // Draws a few frames, until everything that changed is on the screen.
+    void settle();
     [[nodiscard]] bool working() const;
     [[nodiscard]] double patience() const;
 
@@ -90,6 +92,7 @@ private:
     bool confirm_ = false;  // Enter was pressed since the last frame
     std::string message_;   // of the last thing done, for the status bar
     bool quit_ = false;
+    int frames_due_ = 0;
 };
 
 }  // namespace raypick
