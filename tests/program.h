@@ -45,9 +45,9 @@ std::string read_file(const std::filesystem::path& file);
 // Where the program's input comes from and its output goes to.
 struct ProgramFiles {
     std::filesystem::path in = "/dev/null";
-    std::filesystem::path out;     // empty: a pipe that the test reads
-    std::string display;           // X display; empty: none
-    std::filesystem::path folder;  // to run in; empty: the test's own
+    std::filesystem::path out;       // empty: a pipe that the test reads
+    std::string display{};           // X display; empty: none
+    std::filesystem::path folder{};  // to run in; empty: the test's own
 };
 
 // The program with its arguments, running without a display (no DISPLAY, no WAYLAND_DISPLAY) unless

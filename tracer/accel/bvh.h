@@ -6,6 +6,7 @@
 
 #include "tracer/geometry/bounds.h"
 
+#include <glm/ext/vector_bool3.hpp>
 #include <glm/vec3.hpp>
 
 #include <algorithm>
@@ -83,7 +84,7 @@ private:
     glm::vec3 inverse_{0.0f};
     glm::vec3 near_origin_{0.0f};
     glm::vec3 far_origin_{0.0f};
-    std::array<bool, 3> negative_{};
+    glm::bvec3 negative_{false};
 };
 
 // Calls leaf(index) for the boxes that the ray may meet before limit(), near ones first; limit()
