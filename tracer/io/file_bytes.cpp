@@ -85,7 +85,8 @@ FileText::FileText(const std::filesystem::path& file)
         throw FileError(file.string(), "byte 0: UTF-16 text is not read: save it as UTF-8");
     }
     if (view_.substr(0, 3) == "\xef\xbb\xbf") view_.remove_prefix(3);
-    const bool old_mac = view_.find('\n') == view_.npos && view_.find('\r') != view_.npos;
+    const bool old_mac =
+        view_.find('\n') == std::string_view::npos && view_.find('\r') != std::string_view::npos;
     if (old_mac) {
         old_mac_ = view_;
         std::replace(old_mac_.begin(), old_mac_.end(), '\r', '\n');

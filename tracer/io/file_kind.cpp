@@ -22,12 +22,12 @@ struct Ending {
 };
 
 constexpr std::array<Ending, 6> kEndings{{
-    {".json", FileKind::kScene},
-    {".obj", FileKind::kObj},
-    {".gltf", FileKind::kGltf},
-    {".glb", FileKind::kGltf},
-    {".ply", FileKind::kPly},
-    {".stl", FileKind::kStl},
+    {".json", FileKind::scene},
+    {".obj", FileKind::obj},
+    {".gltf", FileKind::gltf},
+    {".glb", FileKind::gltf},
+    {".ply", FileKind::ply},
+    {".stl", FileKind::stl},
 }};
 
 std::string lower_case(std::string text) {
@@ -49,13 +49,13 @@ bool begins_with(std::string_view text, std::string_view start) {
 }
 
 bool contains(std::string_view text, std::string_view part) {
-    return text.find(part) != text.npos;
+    return text.find(part) != std::string_view::npos;
 }
 
 std::string_view without_mark_and_blanks(std::string_view text) {
     if (begins_with(text, "\xef\xbb\xbf")) text.remove_prefix(3);
     const std::size_t first = text.find_first_not_of(" \t\r\n");
-    return first == text.npos ? std::string_view() : text.substr(first);
+    return first == std::string_view::npos ? std::string_view() : text.substr(first);
 }
 
 std::uint32_t binary_stl_facets(std::string_view bytes) {
@@ -78,10 +78,10 @@ bool begins_with_solid(const FileHead& head) {
 // JSON is ours unless it says that it is glTF.
 FileKind json_kind(const std::filesystem::path& file, std::string_view text) {
     const std::optional<FileKind> named = kind_by_ending(file);
-    if (named == FileKind::kScene || named == FileKind::kGltf) return *named;
+    if (named == FileKind::scene || named == FileKind::gltf) return *named;
     const bool gltf = contains(text, "\"asset\"") || contains(text, "\"bufferViews\"") ||
                       contains(text, "\"accessors\"");
-    return gltf ? FileKind::kGltf : FileKind::kScene;
+    return gltf ? FileKind::gltf : FileKind::scene;
 }
 
 // Does the first line that is no comment look like OBJ?
@@ -117,19 +117,20 @@ bool is_binary_stl(const FileHead& head) {
 
 std::optional<FileKind> file_kind(const std::filesystem::path& file, const FileHead& head) {
     const std::string_view text = without_mark_and_blanks(head.bytes);
-    if (begins_with(text, "glTF")) return FileKind::kGltf;
-    if (begins_with(text, "ply\n") || begins_with(text, "ply\r")) return FileKind::kPly;
-    if (begins_with_solid(head) || has_binary_stl_size(head)) return FileKind::kStl;
+    if (begins_with(text, "glTF")) return FileKind::gltf;
+    if (begins_with(text, "ply\n") || begins_with(text, "ply\r")) return FileKind::ply;
+    if (begins_with_solid(head) || has_binary_stl_size(head)) return FileKind::stl;
     for (const std::string_view start : {"{", "//", "/*"}) {
         if (begins_with(text, start)) return json_kind(file, text);
     }
     if (const std::optional<FileKind> named = kind_by_ending(file)) return named;
-    if (looks_like_obj(text)) return FileKind::kObj;
+    if (looks_like_obj(text)) return FileKind::obj;
     return std::nullopt;
 }
 
 std::vector<std::string> readable_extensions() {
     std::vector<std::string> endings;
+    endings.reserve(kEndings.size());
     for (const Ending& known : kEndings)
         endings.emplace_back(known.ending);
     return endings;

@@ -8,7 +8,7 @@
 
 namespace raypick {
 
-enum class FileKind { kScene, kObj, kGltf, kPly, kStl };
+enum class FileKind { scene, obj, gltf, ply, stl };
 
 // A file's first bytes.
 struct FileHead {

@@ -172,7 +172,7 @@ private:
 
     // Node name, else mesh name, else "mesh3"; without a mesh "node3".
     std::string node_name(const JsonValue& node, std::size_t index) const {
-        const std::string name = name_of(node);
+        std::string name = name_of(node);
         if (!name.empty()) return name;
         const std::optional<JsonValue> mesh = node.find("mesh");
         if (!mesh) return fmt::format("node{}", index);
@@ -269,7 +269,7 @@ private:
             loaded_.scene.lights.emplace_back(PointLight{name, world.translation, colour});
             if (type == "spot") warn(fmt::format("spot light \"{}\" shines all around", name));
         } else {
-            json.need("type").refuse("\"directional\", \"point\" or \"spot\"");
+            json.need("type").refuse(R"("directional", "point" or "spot")");
         }
     }
 

@@ -115,16 +115,16 @@ double GltfAccessor::value(const char* element, std::size_t component) const {
     const double value = read(element + component * size_of(base_.component), base_.component);
     if (!normalized_) return value;
     switch (base_.component) {
-        case Component::kInt8:
+        case Component::int8:
             return std::max(value / 127.0, -1.0);
-        case Component::kUint8:
+        case Component::uint8:
             return value / 255.0;
-        case Component::kInt16:
+        case Component::int16:
             return std::max(value / 32767.0, -1.0);
-        case Component::kUint16:
+        case Component::uint16:
             return value / 65535.0;
-        case Component::kUint32:
-        case Component::kFloat:
+        case Component::uint32:
+        case Component::float32:
             break;
     }
     return value;
@@ -141,12 +141,12 @@ glm::dvec2 GltfAccessor::vec2(std::size_t index) const {
 }
 
 bool GltfAccessor::holds_indices() const {
-    return base_.component == Component::kUint8 || base_.component == Component::kUint16 ||
-           base_.component == Component::kUint32;
+    return base_.component == Component::uint8 || base_.component == Component::uint16 ||
+           base_.component == Component::uint32;
 }
 
-std::uint32_t GltfAccessor::index(std::size_t index) const {
-    const char* const at = element(index);
+std::uint32_t GltfAccessor::index(std::size_t element_index) const {
+    const char* const at = element(element_index);
     return at == nullptr ? 0 : static_cast<std::uint32_t>(read(at, base_.component));
 }
 
@@ -166,14 +166,14 @@ GltfAccessor::Component GltfAccessor::component_type(const JsonValue& json) {
 
 std::size_t GltfAccessor::size_of(Component component) {
     switch (component) {
-        case Component::kInt8:
-        case Component::kUint8:
+        case Component::int8:
+        case Component::uint8:
             return 1;
-        case Component::kInt16:
-        case Component::kUint16:
+        case Component::int16:
+        case Component::uint16:
             return 2;
-        case Component::kUint32:
-        case Component::kFloat:
+        case Component::uint32:
+        case Component::float32:
             break;
     }
     return 4;
@@ -181,17 +181,17 @@ std::size_t GltfAccessor::size_of(Component component) {
 
 double GltfAccessor::read(const char* bytes, Component component) {
     switch (component) {
-        case Component::kInt8:
+        case Component::int8:
             return load<std::int8_t>(bytes);
-        case Component::kUint8:
+        case Component::uint8:
             return load<std::uint8_t>(bytes);
-        case Component::kInt16:
+        case Component::int16:
             return load<std::int16_t>(bytes);
-        case Component::kUint16:
+        case Component::uint16:
             return load<std::uint16_t>(bytes);
-        case Component::kUint32:
+        case Component::uint32:
             return load<std::uint32_t>(bytes);
-        case Component::kFloat:
+        case Component::float32:
             break;
     }
     return static_cast<double>(load<float>(bytes));

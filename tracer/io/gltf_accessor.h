@@ -25,30 +25,30 @@ public:
     [[nodiscard]] std::size_t count() const { return count_; }
 
     // Integers scaled to [0, 1] or [-1, 1] if the accessor says so.
-    [[nodiscard]] glm::dvec3 vec3(std::size_t element) const;
-    [[nodiscard]] glm::dvec2 vec2(std::size_t element) const;
+    [[nodiscard]] glm::dvec3 vec3(std::size_t index) const;
+    [[nodiscard]] glm::dvec2 vec2(std::size_t index) const;
     // Of an accessor of unsigned integers.
-    [[nodiscard]] std::uint32_t index(std::size_t element) const;
+    [[nodiscard]] std::uint32_t index(std::size_t element_index) const;
     [[nodiscard]] bool holds_indices() const;
 
     // Throws FileError that names the accessor and the element.
     [[noreturn]] void fail(std::size_t element, const std::string& complaint) const;
 
 private:
-    enum class Component : int {
-        kInt8 = 5120,
-        kUint8 = 5121,
-        kInt16 = 5122,
-        kUint16 = 5123,
-        kUint32 = 5125,
-        kFloat = 5126
+    enum class Component {
+        int8 = 5120,
+        uint8 = 5121,
+        int16 = 5122,
+        uint16 = 5123,
+        uint32 = 5125,
+        float32 = 5126
     };
 
     // Elements at equal distances in a buffer view.
     struct Array {
         const char* data = nullptr;  // nullptr: all 0
         std::size_t stride = 0;
-        Component component = Component::kFloat;
+        Component component = Component::float32;
     };
 
     [[nodiscard]] Array array(GltfDocument& document, const JsonValue& json, std::size_t count,

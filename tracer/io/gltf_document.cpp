@@ -201,15 +201,16 @@ std::string_view GltfDocument::load_buffer(std::size_t index) {
     const std::string text = uri->text();
     if (text.compare(0, 5, "data:") == 0) {
         const std::size_t comma = text.find(',');
-        const bool base64 =
-            comma != text.npos && comma >= 12 && text.compare(comma - 7, 7, ";base64") == 0;
+        const bool base64 = comma != std::string_view::npos && comma >= 12 &&
+                            text.compare(comma - 7, 7, ";base64") == 0;
         if (!base64) uri->fail("a data URI must be base64");
         std::optional<std::string> bytes = decode_base64(std::string_view(text).substr(comma + 1));
         if (!bytes) uri->fail("the data are not base64");
         decoded_.push_back(*std::move(bytes));
         return decoded_.back();
     }
-    if (text.find("://") != text.npos) uri->fail("only files beside this one are read");
+    if (text.find("://") != std::string_view::npos)
+        uri->fail("only files beside this one are read");
     try {
         beside_.push_back(read_file(path_.parent_path() / percent_decoded(text)));
     } catch (const FileError& error) {

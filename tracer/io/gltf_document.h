@@ -22,6 +22,7 @@ public:
     explicit GltfDocument(const std::filesystem::path& file);
     GltfDocument(const GltfDocument&) = delete;
     GltfDocument& operator=(const GltfDocument&) = delete;
+    ~GltfDocument() = default;
 
     // The elements of an array of the file's root; none if it is not there.
     [[nodiscard]] const std::vector<JsonValue>& array(std::string_view name) const;

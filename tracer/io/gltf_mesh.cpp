@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 
-enum class Mode { kTriangles = 4, kStrip = 5, kFan = 6 };
+enum class Mode { triangles = 4, strip = 5, fan = 6 };
 
 // The vertices that primitives with the same attributes share, each taken over when first used.
 class VertexSource {
@@ -152,12 +152,12 @@ private:
     }
 
     void add_triangles(Mode mode) {
-        const std::size_t step = mode == Mode::kTriangles ? 3 : 1;
+        const std::size_t step = mode == Mode::triangles ? 3 : 1;
         for (std::size_t i = 0; i + 2 < corners_.size(); i += step) {
-            const std::uint32_t a = corners_[mode == Mode::kFan ? 0 : i];
+            const std::uint32_t a = corners_[mode == Mode::fan ? 0 : i];
             const std::uint32_t b = corners_[i + 1];
             const std::uint32_t c = corners_[i + 2];
-            const bool turned = mode == Mode::kStrip && i % 2 == 1;
+            const bool turned = mode == Mode::strip && i % 2 == 1;
             data_.triangles.push_back(turned ? glm::uvec3(b, a, c) : glm::uvec3(a, b, c));
         }
     }

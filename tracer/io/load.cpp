@@ -25,15 +25,15 @@ FileKind kind_or_fail(const std::filesystem::path& file) {
 LoadedScene load_kind(const std::filesystem::path& file, FileKind kind,
                       const LoadOptions& options) {
     switch (kind) {
-        case FileKind::kScene:
+        case FileKind::scene:
             return load_scene_file(file, options);
-        case FileKind::kObj:
+        case FileKind::obj:
             return load_obj(file, options);
-        case FileKind::kGltf:
+        case FileKind::gltf:
             return load_gltf(file, options);
-        case FileKind::kPly:
+        case FileKind::ply:
             return load_ply(file, options);
-        case FileKind::kStl:
+        case FileKind::stl:
             break;
     }
     return load_stl(file, options);
@@ -61,7 +61,7 @@ LoadedScene naming_file(const std::filesystem::path& file, const Load& load) {
 
 LoadedScene load_model(const std::filesystem::path& file, const LoadOptions& options) {
     const FileKind kind = kind_or_fail(file);
-    if (kind == FileKind::kScene) throw FileError(file.string(), "is a scene file, not a model");
+    if (kind == FileKind::scene) throw FileError(file.string(), "is a scene file, not a model");
     return load_kind(file, kind, options);
 }
 

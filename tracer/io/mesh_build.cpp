@@ -79,9 +79,12 @@ void fill_normals(MeshData& data) {
             // A degenerate triangle is never hit: any normal will do.
             const glm::vec3 z(0.0f, 0.0f, 1.0f);
             triangle[corner] = static_cast<std::uint32_t>(data.positions.size());
-            data.positions.push_back(glm::vec3(data.positions[vertex]));
+            const glm::vec3 position = data.positions[vertex];
+            data.positions.push_back(position);
             data.normals.push_back(normal != glm::vec3(0.0f) ? normal : z);
-            if (!data.uvs.empty()) data.uvs.push_back(glm::vec2(data.uvs[vertex]));
+            if (data.uvs.empty()) continue;
+            const glm::vec2 uv = data.uvs[vertex];
+            data.uvs.push_back(uv);
         }
     }
     // The vertices that lost their triangles.

@@ -39,7 +39,7 @@ constexpr std::array<IndexKind, 3> kIndexKinds{{
 // "3.1+e2": an exponent with its sign on the wrong side, as some writers print it.
 std::optional<double> parse_misplaced_sign(std::string_view word) {
     const std::size_t e = word.find_first_of("eE");
-    if (e == word.npos || e == 0 || (word[e - 1] != '+' && word[e - 1] != '-')) {
+    if (e == std::string_view::npos || e == 0 || (word[e - 1] != '+' && word[e - 1] != '-')) {
         return std::nullopt;
     }
     std::string fixed(word);

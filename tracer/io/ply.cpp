@@ -57,21 +57,21 @@ public:
 
     double value(PlyType type) {
         switch (type) {
-            case PlyType::kInt8:
+            case PlyType::int8:
                 return read<std::int8_t>();
-            case PlyType::kUint8:
+            case PlyType::uint8:
                 return read<std::uint8_t>();
-            case PlyType::kInt16:
+            case PlyType::int16:
                 return read<std::int16_t>();
-            case PlyType::kUint16:
+            case PlyType::uint16:
                 return read<std::uint16_t>();
-            case PlyType::kInt32:
+            case PlyType::int32:
                 return read<std::int32_t>();
-            case PlyType::kUint32:
+            case PlyType::uint32:
                 return read<std::uint32_t>();
-            case PlyType::kFloat:
+            case PlyType::float32:
                 return static_cast<double>(read<float>());
-            case PlyType::kDouble:
+            case PlyType::float64:
                 break;
         }
         return read<double>();
@@ -239,8 +239,9 @@ private:
             items_.fail(
                 fmt::format("the list {} has the length {}", in_quotes(property.name), length));
         }
-        const std::size_t item = header_.format == PlyFormat::kAscii ? 2 : byte_size(property.type);
-        if (length > static_cast<double>((items_.bytes_left() + 1) / item)) {
+        const std::size_t item = header_.format == PlyFormat::ascii ? 2 : byte_size(property.type);
+        const std::uint64_t most = (items_.bytes_left() + 1) / item;
+        if (length > static_cast<double>(most)) {
             items_.fail(fmt::format("the list {} has the length {}, but only {} bytes follow",
                                     in_quotes(property.name), length, items_.bytes_left()));
         }
@@ -282,7 +283,7 @@ private:
             indices_.push_back(items_.value(property.type));
     }
 
-    std::uint32_t checked(double index) const {
+    [[nodiscard]] std::uint32_t checked(double index) const {
         const auto count = static_cast<double>(mesh_.positions.size());
         if (!(index >= 0.0 && index < count) || index != std::floor(index)) {
             items_.fail(fmt::format("there is no vertex {} (the file has {}, counted from 0)",
@@ -348,12 +349,12 @@ private:
 
 PlyMesh read_data(const std::string& file, std::string_view bytes, const PlyHeader& header,
                   const LoadOptions& options) {
-    if (header.format == PlyFormat::kAscii) {
+    if (header.format == PlyFormat::ascii) {
         AsciiItems items(file, bytes, header.data_offset);
         return PlyReader<AsciiItems>(std::move(items), header, file, options).read();
     }
     constexpr bool kThisIsLittle = std::endian::native == std::endian::little;
-    const bool swap = (header.format == PlyFormat::kLittleEndian) != kThisIsLittle;
+    const bool swap = (header.format == PlyFormat::little_endian) != kThisIsLittle;
     BinaryItems items(file, bytes, header.data_offset, swap);
     return PlyReader<BinaryItems>(std::move(items), header, file, options).read();
 }

@@ -17,22 +17,22 @@ struct TypeName {
 };
 
 constexpr std::array<TypeName, 16> kTypeNames{{
-    {"char", PlyType::kInt8},
-    {"int8", PlyType::kInt8},
-    {"uchar", PlyType::kUint8},
-    {"uint8", PlyType::kUint8},
-    {"short", PlyType::kInt16},
-    {"int16", PlyType::kInt16},
-    {"ushort", PlyType::kUint16},
-    {"uint16", PlyType::kUint16},
-    {"int", PlyType::kInt32},
-    {"int32", PlyType::kInt32},
-    {"uint", PlyType::kUint32},
-    {"uint32", PlyType::kUint32},
-    {"float", PlyType::kFloat},
-    {"float32", PlyType::kFloat},
-    {"double", PlyType::kDouble},
-    {"float64", PlyType::kDouble},
+    {"char", PlyType::int8},
+    {"int8", PlyType::int8},
+    {"uchar", PlyType::uint8},
+    {"uint8", PlyType::uint8},
+    {"short", PlyType::int16},
+    {"int16", PlyType::int16},
+    {"ushort", PlyType::uint16},
+    {"uint16", PlyType::uint16},
+    {"int", PlyType::int32},
+    {"int32", PlyType::int32},
+    {"uint", PlyType::uint32},
+    {"uint32", PlyType::uint32},
+    {"float", PlyType::float32},
+    {"float32", PlyType::float32},
+    {"double", PlyType::float64},
+    {"float64", PlyType::float64},
 }};
 
 class HeaderParser {
@@ -74,11 +74,11 @@ private:
     void read_format() {
         const std::string_view word = scanner_.word();
         if (word == "ascii") {
-            header_.format = PlyFormat::kAscii;
+            header_.format = PlyFormat::ascii;
         } else if (word == "binary_little_endian") {
-            header_.format = PlyFormat::kLittleEndian;
+            header_.format = PlyFormat::little_endian;
         } else if (word == "binary_big_endian") {
-            header_.format = PlyFormat::kBigEndian;
+            header_.format = PlyFormat::big_endian;
         } else {
             scanner_.fail(in_quotes(word) +
                           " is no PLY format: ascii, binary_little_endian or "
@@ -107,8 +107,8 @@ private:
         std::string_view type_word = scanner_.word();
         if (type_word == "list") {
             property.list_count = type(scanner_.word());
-            const bool whole =
-                *property.list_count != PlyType::kFloat && *property.list_count != PlyType::kDouble;
+            const bool whole = *property.list_count != PlyType::float32 &&
+                               *property.list_count != PlyType::float64;
             if (!whole) scanner_.fail("the length of a list must have an integer type");
             type_word = scanner_.word();
         }
@@ -119,7 +119,7 @@ private:
     }
 
     [[nodiscard]] PlyType type(std::string_view word) const {
-        const auto known = std::find_if(kTypeNames.begin(), kTypeNames.end(),
+        const auto* const known = std::find_if(kTypeNames.begin(), kTypeNames.end(),
                                         [&](const TypeName& t) { return t.name == word; });
         if (known == kTypeNames.end()) scanner_.fail(in_quotes(word) + " is no PLY type");
         return known->type;
@@ -136,17 +136,17 @@ private:
 
 std::size_t byte_size(PlyType type) {
     switch (type) {
-        case PlyType::kInt8:
-        case PlyType::kUint8:
+        case PlyType::int8:
+        case PlyType::uint8:
             return 1;
-        case PlyType::kInt16:
-        case PlyType::kUint16:
+        case PlyType::int16:
+        case PlyType::uint16:
             return 2;
-        case PlyType::kInt32:
-        case PlyType::kUint32:
-        case PlyType::kFloat:
+        case PlyType::int32:
+        case PlyType::uint32:
+        case PlyType::float32:
             return 4;
-        case PlyType::kDouble:
+        case PlyType::float64:
             break;
     }
     return 8;
@@ -160,7 +160,7 @@ std::optional<std::size_t> PlyElement::find(std::string_view property) const {
 }
 
 std::size_t PlyElement::smallest_item(PlyFormat format) const {
-    if (format == PlyFormat::kAscii) return 2 * properties.size();  // a digit and a blank each
+    if (format == PlyFormat::ascii) return 2 * properties.size();  // a digit and a blank each
     std::size_t size = 0;
     for (const PlyProperty& property : properties)
         size += byte_size(property.list_count.value_or(property.type));

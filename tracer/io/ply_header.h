@@ -11,15 +11,15 @@
 
 namespace raypick {
 
-enum class PlyFormat { kAscii, kLittleEndian, kBigEndian };
+enum class PlyFormat { ascii, little_endian, big_endian };
 
-enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
+enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
 std::size_t byte_size(PlyType type);
 
 struct PlyProperty {
     std::string name;
-    PlyType type = PlyType::kFloat;
+    PlyType type = PlyType::float32;
     std::optional<PlyType> list_count;  // the type of the length, if this is a list
 };
 
@@ -36,7 +36,7 @@ struct PlyElement {
 };
 
 struct PlyHeader {
-    PlyFormat format = PlyFormat::kAscii;
+    PlyFormat format = PlyFormat::ascii;
     std::vector<PlyElement> elements;
     std::size_t data_offset = 0;  // of the first byte after the header
 };

@@ -135,9 +135,9 @@ void PolygonSplitter::build_grid() {
     // Counting sort by cell.
     const auto index = [&](std::uint32_t corner) {
         const glm::ivec2 at = cell(flat_[corner]);
-        return static_cast<std::size_t>(at.y * grid_size_ + at.x);
+        return cell_number(at.x, at.y);
     };
-    cell_begin_.assign(static_cast<std::size_t>(grid_size_ * grid_size_) + 1, 0);
+    cell_begin_.assign(cell_number(0, grid_size_) + 1, 0);
     for (const std::uint32_t corner : reflex)
         ++cell_begin_[index(corner) + 1];
     for (std::size_t i = 1; i < cell_begin_.size(); ++i)
@@ -166,7 +166,7 @@ bool PolygonSplitter::is_ear(std::uint32_t corner) {
     const glm::ivec2 last = cell(glm::max(glm::max(flat_[a], flat_[corner]), flat_[c]));
     for (int y = first.y; y <= last.y; ++y) {
         for (int x = first.x; x <= last.x; ++x) {
-            const auto at = static_cast<std::size_t>(y * grid_size_ + x);
+            const std::size_t at = cell_number(x, y);
             const std::uint64_t work = 1 + cell_begin_[at + 1] - cell_begin_[at];
             work_left_ -= std::min(work, work_left_);
             for (std::uint32_t i = cell_begin_[at]; i < cell_begin_[at + 1]; ++i) {

@@ -4,6 +4,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -34,6 +35,10 @@ private:
     [[nodiscard]] bool blocks(std::uint32_t reflex, std::uint32_t a, std::uint32_t b,
                               std::uint32_t c) const;
     [[nodiscard]] glm::ivec2 cell(const glm::dvec2& point) const;
+    [[nodiscard]] std::size_t cell_number(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_size_) +
+               static_cast<std::size_t>(x);
+    }
     // The corner to clip when no ear is found: a flat one, else the one that sticks out most.
     [[nodiscard]] std::uint32_t least_bad(std::uint32_t start) const;
     void clip(std::uint32_t corner);

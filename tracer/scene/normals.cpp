@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -253,7 +254,7 @@ private:
     void place_degenerate() {
         for (std::size_t t = 0; t < data_.triangles.size(); ++t) {
             if (!degenerate(t)) continue;
-            for (Corner c = static_cast<Corner>(3 * t); c < 3 * t + 3; ++c) {
+            for (auto c = static_cast<Corner>(3 * t); c < 3 * t + 3; ++c) {
                 std::uint32_t& first = first_vertex_[welded_.point[vertex(c)]];
                 if (first == kNone) {
                     first = static_cast<std::uint32_t>(out_.positions.size());
@@ -270,7 +271,9 @@ private:
         std::uint64_t uv = 0;
         Corner corner = 0;
 
-        friend auto operator<=>(const Use&, const Use&) = default;
+        friend bool operator<(const Use& a, const Use& b) {
+            return std::tie(a.group, a.uv, a.corner) < std::tie(b.group, b.uv, b.corner);
+        }
     };
 
     MeshData data_;
