@@ -46,6 +46,7 @@ const PreviewView* Preview::shown() const {
 
 void Preview::close() {
     retire();
+    collect_ended();
     error_.clear();
     shown_.reset();
     shown_job_.reset();
