@@ -219,7 +219,8 @@ std::string objects_text(const Scene& scene) {
 
 int run_info(const InfoCommand& command) {
     const OpenedScene opened = open_scene(command.scene);
-    const BuiltAccel built = build_accel(opened, command.scene.verbose);
+    const BuiltAccel built = build_timed(opened);
+    if (command.scene.verbose) print_report(built);
     StandardOutput output;
     if (command.json) {
         output.write(dump(info_json(command, opened, built)) + "\n");

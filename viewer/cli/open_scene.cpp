@@ -22,7 +22,7 @@ private:
 
 }  // namespace
 
-OpenedScene open_scene(const SceneOptions& options, const std::stop_token& stop) {
+OpenedScene load_timed(const SceneOptions& options, const std::stop_token& stop) {
     const Stopwatch watch;
     LoadOptions load;
     load.crease_degrees = options.crease_degrees;
@@ -32,17 +32,25 @@ OpenedScene open_scene(const SceneOptions& options, const std::stop_token& stop)
     opened.load_seconds = watch.seconds();
     opened.warnings = std::move(loaded.warnings);
     opened.scene = std::make_shared<const Scene>(std::move(loaded.scene));
+    return opened;
+}
+
+void print_report(const OpenedScene& opened, const SceneOptions& options) {
     for (const std::string& warning : opened.warnings)
         print_message("warning: " + warning);
     if (options.verbose) {
         print_message(fmt::format("loaded {}: {} objects in {:.3f} s", options.file.string(),
                                   opened.scene->objects.size(), opened.load_seconds));
     }
+}
+
+OpenedScene open_scene(const SceneOptions& options) {
+    OpenedScene opened = load_timed(options);
+    print_report(opened, options);
     return opened;
 }
 
-BuiltAccel build_accel(const OpenedScene& opened, bool verbose, int threads,
-                       const std::stop_token& stop) {
+BuiltAccel build_timed(const OpenedScene& opened, int threads, const std::stop_token& stop) {
     const Stopwatch watch;
     BuildOptions options;
     options.threads = threads;
@@ -50,12 +58,13 @@ BuiltAccel build_accel(const OpenedScene& opened, bool verbose, int threads,
     BuiltAccel built;
     built.accel = std::make_shared<const Accel>(opened.scene, options);
     built.build_seconds = watch.seconds();
-    if (verbose) {
-        const AccelStats stats = built.accel->stats();
-        print_message(fmt::format("built the tree: {} triangles, {} nodes, {} bytes in {:.3f} s",
-                                  stats.triangles, stats.nodes, stats.bytes, built.build_seconds));
-    }
     return built;
+}
+
+void print_report(const BuiltAccel& built) {
+    const AccelStats stats = built.accel->stats();
+    print_message(fmt::format("built the tree: {} triangles, {} nodes, {} bytes in {:.3f} s",
+                              stats.triangles, stats.nodes, stats.bytes, built.build_seconds));
 }
 
 Camera camera_for(const Scene& scene, ImageSize size, const CameraOverride& wanted) {

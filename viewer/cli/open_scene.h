@@ -19,8 +19,12 @@ struct OpenedScene {
     double load_seconds = 0.0;
 };
 
-// Loads the file and prints its warnings. Throws what load_scene throws.
-OpenedScene open_scene(const SceneOptions& options, const std::stop_token& stop = {});
+// Loads the file. Throws what load_scene throws.
+OpenedScene load_timed(const SceneOptions& options, const std::stop_token& stop = {});
+// What loading had to say: its warnings and, if asked for, its time.
+void print_report(const OpenedScene& opened, const SceneOptions& options);
+// Both.
+OpenedScene open_scene(const SceneOptions& options);
 
 struct BuiltAccel {
     std::shared_ptr<const Accel> accel;
@@ -28,8 +32,10 @@ struct BuiltAccel {
 };
 
 // Throws Cancelled.
-BuiltAccel build_accel(const OpenedScene& opened, bool verbose, int threads = 0,
+BuiltAccel build_timed(const OpenedScene& opened, int threads = 0,
                        const std::stop_token& stop = {});
+// Its size and time.
+void print_report(const BuiltAccel& built);
 
 // choose_camera; what the person said about it being nonsense is a UsageError.
 Camera camera_for(const Scene& scene, ImageSize size, const CameraOverride& wanted);

@@ -85,7 +85,8 @@ std::vector<PickQuestion> questions_of(const PickCommand& command, const PickAns
 
 int run_pick(const PickCommand& command) {
     const OpenedScene opened = open_scene(command.scene);
-    const BuiltAccel built = build_accel(opened, command.scene.verbose);
+    const BuiltAccel built = build_timed(opened);
+    if (command.scene.verbose) print_report(built);
     const PickAnswerer answerer(built.accel, command.camera, command.size, command.all);
     StandardOutput output;
     output.write(answerer.answer(questions_of(command, answerer), 1));

@@ -52,6 +52,12 @@ void ProgressBar::show(std::string_view doing, double fraction, std::string_view
     drawn_ = true;
 }
 
+void ProgressBar::show(std::string_view doing) {
+    if (!visible_) return;
+    print(fmt::format("{}{} ...", kClearLine, doing));
+    drawn_ = true;
+}
+
 void ProgressBar::clear() {
     if (drawn_) print(kClearLine);
     drawn_ = false;

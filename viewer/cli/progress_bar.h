@@ -18,6 +18,8 @@ public:
     [[nodiscard]] bool visible() const { return visible_; }
     // `fraction` in [0, 1]; `doing` and `detail` are short texts before and behind the bar.
     void show(std::string_view doing, double fraction, std::string_view detail);
+    // A line without a bar, for work whose end can't be foreseen.
+    void show(std::string_view doing);
     void clear();
 
 private:

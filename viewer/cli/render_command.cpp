@@ -42,13 +42,14 @@ void show_progress(const RenderJob& job, ProgressBar& bar) {
 }
 
 Frame traced(const RenderCommand& command, const OpenedScene& opened, const Camera& camera,
-             const Interrupt& interrupt) {
-    const BuiltAccel built =
-        build_accel(opened, command.scene.verbose, command.settings.threads, interrupt.token());
+             const Interrupt& interrupt, ProgressBar& bar) {
+    bar.show("building the tree");
+    const BuiltAccel built = build_timed(opened, command.settings.threads, interrupt.token());
+    bar.clear();
+    if (command.scene.verbose) print_report(built);
     constexpr bool kCoarseFirst = false;  // nobody looks at it before it is done
     RenderJob job(built.accel, camera, command.size, command.settings, kCoarseFirst);
     const std::stop_callback cancel(interrupt.token(), [&job] { job.cancel(); });
-    ProgressBar bar;
     if (bar.visible()) show_progress(job, bar);
     job.wait();
     interrupt.check();
@@ -105,16 +106,21 @@ Json stats_json(const RenderCommand& command, const OpenedScene& opened, const F
 }
 
 Frame make_frame(const RenderCommand& command, const OpenedScene& opened,
-                 const Interrupt& interrupt) {
+                 const Interrupt& interrupt, ProgressBar& bar) {
     const Camera camera = camera_for(*opened.scene, command.size, command.camera);
     return command.raster ? rasterized(command, opened, camera)
-                          : traced(command, opened, camera, interrupt);
+                          : traced(command, opened, camera, interrupt, bar);
 }
 
 void render_to(const RenderOutput& output, const RenderCommand& command,
                const Interrupt& interrupt) {
-    const OpenedScene opened = open_scene(command.scene, interrupt.token());
-    const Frame frame = make_frame(command, opened, interrupt);
+    ProgressBar bar;
+    bar.show("loading");
+    const OpenedScene opened = load_timed(command.scene, interrupt.token());
+    bar.clear();
+    print_report(opened, command.scene);
+    const Frame frame = make_frame(command, opened, interrupt, bar);
+    bar.clear();
     interrupt.check();
     output.write(frame.image);
     if (command.scene.verbose) {
