@@ -10,7 +10,6 @@
 namespace raypick {
 namespace {
 
-using testing::ElementsAre;
 using testing::IsEmpty;
 
 // A window of 800 x 600 units whose framebuffer is larger by these factors.

@@ -37,8 +37,10 @@ protected:
         }
         return false;
     }
-    bool in_state(PreviewStatus::State state) const { return view_->trace_status().state == state; }
-    bool traced() const { return view_->shown() && view_->shown()->traced; }
+    [[nodiscard]] bool in_state(PreviewStatus::State state) const {
+        return view_->trace_status().state == state;
+    }
+    [[nodiscard]] bool traced() const { return view_->shown() && view_->shown()->traced; }
     // Every pixel's pick is the object that the shown picture has there.
     void expect_picks_match(const Image& picture) {
         std::mt19937 random(3);

@@ -59,7 +59,7 @@ protected:
         program_.emplace(arguments, files);
     }
     // The window's size as `raypick pick` and `raypick render` take the view's.
-    std::string resolution() const {
+    [[nodiscard]] std::string resolution() const {
         const ImageSize size = layout_.view.size;
         return "--resolution=" + std::to_string(size.cols) + "," + std::to_string(size.rows);
     }
@@ -69,7 +69,7 @@ protected:
         return json::parse(line(), nullptr, false);
     }
     // What the command line says is there, seen with the file's own camera.
-    json pick(const std::filesystem::path& file, Pixel pixel) const {
+    [[nodiscard]] json pick(const std::filesystem::path& file, Pixel pixel) const {
         const ProgramResult result =
             run_program({"pick", file.string(), resolution(),
                          "--pixel=" + std::to_string(pixel.row) + "," + std::to_string(pixel.col)});
@@ -81,7 +81,7 @@ protected:
         return program_->wait().exit_code;
     }
     // Waits until that many pixels of outline are on the screen.
-    bool outline_is(bool there) const {
+    [[nodiscard]] bool outline_is(bool there) const {
         for (int i = 0; i < 200; ++i) {
             if ((desktop_->count_pixels(is_outline) > 50) == there) return true;
             std::this_thread::sleep_for(std::chrono::milliseconds(50));

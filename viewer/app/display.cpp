@@ -6,11 +6,13 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <thread>
 #include <utility>
@@ -24,11 +26,11 @@ constexpr std::chrono::milliseconds kBeforeSecondTry{150};
 constexpr char kAnswer = '1';
 
 bool display_named() {
-    for (const char* variable : {"DISPLAY", "WAYLAND_DISPLAY"}) {
+    constexpr std::array kVariables{"DISPLAY", "WAYLAND_DISPLAY"};
+    return std::ranges::any_of(kVariables, [](const char* variable) {
         const char* value = std::getenv(variable);
-        if (value != nullptr && *value != '\0') return true;
-    }
-    return false;
+        return value != nullptr && *value != '\0';
+    });
 }
 
 void silence() {

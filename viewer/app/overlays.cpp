@@ -121,7 +121,7 @@ std::string title_of(const Overlay& overlay) {
 }  // namespace
 
 std::string save_complaint(const std::string& name) {
-    const std::string complaint = unsupported_image_name(name);
+    std::string complaint = unsupported_image_name(name);
     if (!complaint.empty()) return complaint;
     const std::filesystem::path folder = std::filesystem::path(name).parent_path();
     std::error_code error;

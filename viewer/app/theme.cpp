@@ -61,7 +61,8 @@ void load_font(float pixels) {
     if (std::filesystem::is_regular_file(file, error)) {
         static constexpr ImWchar kRanges[] = {0x20,   0x24f,  0x370,  0x52f, 0x2010,
                                               0x2026, 0x2190, 0x2193, 0};
-        if (atlas.AddFontFromFileTTF(file, std::round(14.0f * pixels), nullptr, kRanges)) return;
+        const float size = std::round(14.0f * pixels);
+        if (atlas.AddFontFromFileTTF(file, size, nullptr, kRanges) != nullptr) return;
     }
     ImFontConfig config;
     config.SizePixels = std::round(13.0f * pixels);

@@ -8,9 +8,8 @@
 
 namespace raypick {
 
-UiSession::UiSession(const Window& window, double ui_scale) {
+UiSession::UiSession(const Window& window, double ui_scale) : context_(ImGui::CreateContext()) {
     IMGUI_CHECKVERSION();
-    ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
     const WindowMetrics metrics = window.metrics();
     const double density =
@@ -24,21 +23,24 @@ UiSession::UiSession(const Window& window, double ui_scale) {
 UiSession::~UiSession() {
     ImGui_ImplOpenGL3_Shutdown();
     ImGui_ImplGlfw_Shutdown();
-    ImGui::DestroyContext();
+    ImGui::DestroyContext(context_);
 }
 
 void UiSession::begin_frame() {
+    ImGui::SetCurrentContext(context_);
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
 }
 
 void UiSession::end_frame() {
+    ImGui::SetCurrentContext(context_);
     ImGui::Render();
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
 bool UiSession::typing() const {
+    ImGui::SetCurrentContext(context_);
     return ImGui::GetIO().WantTextInput;
 }
 

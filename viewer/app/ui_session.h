@@ -3,6 +3,8 @@
 
 #include "viewer/app/window.h"
 
+struct ImGuiContext;
+
 namespace raypick {
 
 class UiSession {
@@ -19,6 +21,9 @@ public:
 
     // A text field has the keyboard.
     [[nodiscard]] bool typing() const;
+
+private:
+    ImGuiContext* context_;
 };
 
 }  // namespace raypick

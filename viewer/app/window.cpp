@@ -84,6 +84,16 @@ std::optional<Key> key_of(int key, int scancode) {
     return std::nullopt;
 }
 
+GLFWwindow* open_window(const std::string& title, ImageSize size) {
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    GLFWwindow* handle = glfwCreateWindow(size.cols, size.rows, title.c_str(), nullptr, nullptr);
+    if (handle == nullptr) throw NoWindow(glfw_complaint());
+    return handle;
+}
+
 Window& window_of(GLFWwindow* handle) {
     return *static_cast<Window*>(glfwGetWindowUserPointer(handle));
 }
@@ -99,13 +109,7 @@ GlfwLibrary::~GlfwLibrary() {
 }
 
 Window::Window(const std::string& title, ImageSize size, InputState& input)
-    : input_(input), title_(title) {
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-    handle_ = glfwCreateWindow(size.cols, size.rows, title.c_str(), nullptr, nullptr);
-    if (handle_ == nullptr) throw NoWindow(glfw_complaint());
+    : handle_(open_window(title, size)), input_(input), title_(title) {
     glfwMakeContextCurrent(handle_);
     try {
         load_gl(glfwGetProcAddress);
