@@ -32,14 +32,15 @@ constexpr const char* kSquares =
 
 class CommandTest : public testing::Test {
 protected:
-    std::vector<std::string> pick(std::vector<std::string> more) const {
+    [[nodiscard]] std::vector<std::string> pick(std::vector<std::string> more) const {
         return command("pick", std::move(more));
     }
-    std::vector<std::string> render(std::vector<std::string> more) const {
+    [[nodiscard]] std::vector<std::string> render(std::vector<std::string> more) const {
         return command("render", std::move(more));
     }
     // The command on the squares, seen from the front.
-    std::vector<std::string> command(const std::string& name, std::vector<std::string> more) const {
+    [[nodiscard]] std::vector<std::string> command(const std::string& name,
+                                                   std::vector<std::string> more) const {
         std::vector<std::string> words = {name, squares_.string(), "--eye=0,0,5", "--look-at=0,0,0",
                                           "--fovy=60"};
         words.insert(words.end(), more.begin(), more.end());
@@ -225,10 +226,8 @@ TEST_F(CommandTest, ARayOfAnyLengthPicksByDistance) {
 }
 
 TEST_F(CommandTest, AFileMayBeCalledLikeACommand) {
-    folder_.write("pick", "not a model");
-    const ProgramResult result = run_program({"info", (folder_ / "pick").string()});
-    EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.err, HasSubstr((folder_ / "pick").string()));
+    const std::string file = folder_.write("pick", "not a model").string();
+    expect_refusal(run_program({"info", file}), 1, file);
 }
 
 TEST_F(CommandTest, AStreamOfPixelsIsAnsweredLineByLine) {
@@ -347,7 +346,7 @@ TEST_F(CommandTest, UnreadableFilesAreOneLineAndExit1AndWriteNothing) {
         folder_.write("empty.obj", ""),
         folder_.write("noise.ply", std::string("\x00\xff\x13 noise", 9)),
         folder_.write("cut.ply", "ply\nformat ascii 1.0\nelement vertex 3\n"),
-        folder_.write("bad.json", "{\"raypick\": 1, \"objects\": [}"),
+        folder_.write("bad.json", R"({"raypick": 1, "objects": [})"),
         folder_.write("bad.gltf", "{\"asset\":"),
         folder_.write("cut.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0"),
         folder_.write("unknown.xyz", "1 2 3\n"),
@@ -441,8 +440,6 @@ TEST_F(CommandTest, AnImageThatNoMemoryHoldsIsRefused) {
 
 // Found before the file is even read.
 TEST_F(CommandTest, AnOutputThatCanNotBeWrittenIsFoundFirst) {
-    folder_.write("folder.png", "");
-    std::filesystem::remove(folder_ / "folder.png");
     std::filesystem::create_directory(folder_ / "folder.png");
     for (const std::string& output :
          {(folder_ / "nowhere" / "a.png").string(), (folder_ / "folder.png").string(),
@@ -502,7 +499,7 @@ TEST_F(CommandTest, InfoIsJsonForScripts) {
 TEST_F(CommandTest, VerboseSaysWhatItDoesWithoutTouchingTheOutput) {
     auto words = pick({"--resolution=101,101", "--pixel=50,50"});
     const std::string quiet = run_program(words).out;
-    words.push_back("--verbose");
+    words.emplace_back("--verbose");
     const ProgramResult after = run_program(words);
     EXPECT_EQ(after.out, quiet);
     EXPECT_THAT(after.err, HasSubstr("loaded "));

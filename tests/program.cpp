@@ -17,8 +17,6 @@
 #include <stdexcept>
 #include <thread>
 
-extern char** environ;
-
 namespace raypick {
 namespace {
 
@@ -127,6 +125,7 @@ RunningProgram::RunningProgram(const std::vector<std::string>& arguments, const 
     std::vector<std::string> words = {RAYPICK_PROGRAM};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
+    argv.reserve(words.size() + 1);
     for (std::string& word : words)
         argv.push_back(word.data());
     argv.push_back(nullptr);
@@ -150,7 +149,7 @@ RunningProgram::~RunningProgram() {
     ::waitpid(process_, nullptr, 0);
 }
 
-void RunningProgram::write(const std::string& text) {
+void RunningProgram::write(const std::string& text) const {
     must(::write(input_, text.data(), text.size()) == static_cast<ssize_t>(text.size()), "write");
 }
 

@@ -32,7 +32,8 @@ public:
     }
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     // Writes a file into it.
-    std::filesystem::path write(const std::string& name, const std::string& text) const;
+    [[nodiscard]] std::filesystem::path write(const std::string& name,
+                                              const std::string& text) const;
     // Names of what is in it, sorted.
     [[nodiscard]] std::vector<std::string> names() const;
 
@@ -61,7 +62,7 @@ public:
     RunningProgram(const RunningProgram&) = delete;
     RunningProgram& operator=(const RunningProgram&) = delete;
 
-    void write(const std::string& text);
+    void write(const std::string& text) const;
     void close_input();
     // The next line of its output; nothing if none came in time or it ended.
     std::optional<std::string> read_line(double timeout_seconds = 60.0);

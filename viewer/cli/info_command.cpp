@@ -157,6 +157,7 @@ std::string counted_names(const std::vector<std::string>& names) {
 template <typename Values, typename NameOf>
 std::string counted_names_of(const Values& values, const NameOf& name_of) {
     std::vector<std::string> names;
+    names.reserve(values.size());
     for (const auto& value : values)
         names.push_back(name_of(value));
     return counted_names(names);

@@ -226,7 +226,7 @@ public:
 
     // What was asked for, once parsed. Throws CLI::ValidationError.
     Command command() {
-        if (app_.got_subcommand("view")) return finished_view();
+        if (app_.got_subcommand("view")) return view_;
         if (app_.got_subcommand("pick")) return finished_pick();
         if (app_.got_subcommand("render")) return finished_render();
         info_.scene.verbose = verbose_;
@@ -246,7 +246,6 @@ private:
     void add_render();
     void add_info();
 
-    ViewCommand finished_view() const { return view_; }
     PickCommand finished_pick();
     RenderCommand finished_render();
 
