@@ -262,6 +262,35 @@ TEST_F(Gltf, ReadsSparseAccessors) {
     EXPECT_EQ(corner(load_model(model).scene, 0, 0, 2), glm::dvec3(5, 6, 7));
 }
 
+// A component type that the values claim for themselves once made the bounds check believe in 6
+// bytes where 24 were read.
+TEST_F(Gltf, SparseValuesHaveTheAccessorsOwnType) {
+    Model model = placed_square();
+    const int indices = model.view<std::uint16_t>({2, 3});
+    const int values = model.view<std::uint8_t>({1, 2, 3, 4, 5, 6});
+    model.json["accessors"][0]["sparse"] = {
+        {"count", 2},
+        {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
+        {"values", {{"bufferView", values}, {"componentType", 5121}}}};
+    EXPECT_EQ(complaint_about(model),
+              "/accessors/0/sparse/values: 2 elements need bytes 0 to 24 of a buffer view of 6");
+}
+
+TEST_F(Gltf, ElementsMustNotOverlap) {
+    Model model = placed_square();
+    model.json["accessors"][0]["count"] = 4000000000u;
+    model.json["bufferViews"][0]["byteStride"] = 0;
+    EXPECT_EQ(complaint_about(model), "/bufferViews/0/byteStride: is less than an element");
+}
+
+TEST_F(Gltf, NodesDeeperThanAnyModelAreRefused) {
+    Model model = square();
+    for (int i = 0; i < 1500; ++i)
+        model.node({{"children", {i + 1}}});
+    model.node({{"mesh", 0}});
+    EXPECT_EQ(complaint_about(model), "/nodes/1000: lies more than 1000 nodes deep");
+}
+
 TEST_F(Gltf, WithoutNormalsItIsFlatAndBadOnesAreRepaired) {
     EXPECT_TRUE(mesh_of(load_model(placed_square()).scene).normals.empty());
     Model model;
@@ -587,7 +616,7 @@ TEST_F(Gltf, ComplaintsAboutBuffers) {
     EXPECT_THAT(with_uri("gone.bin", 60), HasSubstr("/buffers/0/uri: "));
     EXPECT_THAT(with_uri("gone.bin", 60), HasSubstr("gone.bin: no such file"));
     EXPECT_EQ(with_uri("http://example.org/a.bin", 60),
-              "/buffers/0/uri: only files beside this one are read");
+              "/buffers/0/uri: must be a path relative to this file");
     EXPECT_EQ(with_uri("data:application/octet-stream;base64,a?", 60),
               "/buffers/0/uri: the data are not base64");
     EXPECT_EQ(with_uri("data:,abc", 60), "/buffers/0/uri: a data URI must be base64");

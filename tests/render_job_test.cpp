@@ -301,6 +301,29 @@ TEST(RenderJob, CancelStopsInMidFrame) {
     job.wait();
 }
 
+// One pixel of it takes 2^40 rays: nothing but a look at the stop token between rays ends it.
+TEST(RenderJob, CancelStopsWithinAPixel) {
+    Scene scene;
+    Material glass;
+    glass.reflect = glm::vec3(0.5f);
+    glass.transmit = glm::vec3(0.5f);
+    place(scene, Sphere{{0.0, 0.0, 0.0}, 3.0}, add_material(scene, glass));
+    place(scene, Sphere{{0.0, 0.0, 0.0}, 50.0}, 0);
+    RenderSettings settings;
+    settings.depth = 40;
+    Camera camera;
+    camera.eye = {0.0, 0.0, 2.0};
+    RenderJob job(shared_accel(std::move(scene)), camera, {4, 4}, settings);
+    std::this_thread::sleep_for(milliseconds(50));
+    ASSERT_FALSE(job.progress().finished);
+    const auto asked = Clock::now();
+    job.cancel();
+    job.wait();
+    EXPECT_LT(Clock::now() - asked, milliseconds(400));
+    EXPECT_TRUE(job.progress().cancelled);
+    EXPECT_EQ(job.progress().version, 1u) << "nothing half traced is shown";
+}
+
 TEST(RenderJob, DestructorWhileRunning) {
     RenderSettings settings;
     settings.depth = 500;

@@ -70,7 +70,9 @@ public:
     [[nodiscard]] bool flat(int axis) const { return scale_[axis] == 0.0f; }
     [[nodiscard]] std::size_t bin(const BoxRef& ref, int axis) const {
         const float place = (ref.bounds.centre()[axis] - min_[axis]) * scale_[axis];
-        return static_cast<std::size_t>(std::clamp(static_cast<int>(place), 0, kBins - 1));
+        // Written so that a NaN goes to the first bin.
+        const float last = static_cast<float>(kBins - 1);
+        return static_cast<std::size_t>(place > 0.0f ? std::min(place, last) : 0.0f);
     }
 
 private:
@@ -303,6 +305,7 @@ private:
         parallel_for(sums.size(), threads, stop_, [&](std::size_t i) {
             body(refs.subspan(i * kChunk, std::min(kChunk, refs.size() - i * kChunk)), sums[i]);
         });
+        if (stop_.stop_requested()) throw Cancelled();
         for (const Sum& sum : sums)
             total.extend(sum);
         return total;

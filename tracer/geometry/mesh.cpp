@@ -70,6 +70,13 @@ Mesh borrow_mesh(std::string name, std::span<const glm::vec3> positions,
 }
 
 void check_mesh(const Mesh& mesh) {
+    // Corners and tree nodes are numbered in 32 bits.
+    constexpr std::size_t kMostTriangles = std::size_t{1} << 30;
+    if (mesh.triangles.size() > kMostTriangles) {
+        throw Error(
+            fmt::format("mesh \"{}\": {} triangles are too many, split it into meshes of {}",
+                        mesh.name, mesh.triangles.size(), kMostTriangles));
+    }
     check_length(mesh, "normals", mesh.normals.size());
     check_length(mesh, "uvs", mesh.uvs.size());
     check_indices(mesh);

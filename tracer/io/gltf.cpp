@@ -89,7 +89,11 @@ private:
         std::size_t node = 0;
         Transform world_from_parent;
         std::string parent_path;
+        int depth = 1;
     };
+
+    // Every node's path names all its ancestors; no model's tree is anywhere near as deep.
+    static constexpr int kMaxDepth = 1000;
 
     void read_materials() {
         const std::vector<JsonValue>& materials = document_.array("materials");
@@ -154,6 +158,9 @@ private:
         const JsonValue& node = document_.array("nodes")[visit.node];
         if (visited_[visit.node]) node.fail("is reached twice: the nodes must form trees");
         visited_[visit.node] = true;
+        if (visit.depth > kMaxDepth) {
+            node.fail(fmt::format("lies more than {} nodes deep", kMaxDepth));
+        }
         const Transform world = visit.world_from_parent * node_transform(node);
         const std::string name = node_name(node, visit.node);
         const std::string path = unique_path(visit.parent_path + '/' + name);
@@ -167,7 +174,7 @@ private:
         append_nodes(node, "children", children);
         // The last first, because the latest visit is made next.
         for (std::size_t i = children.size(); i-- > 0;)
-            todo_.push_back({children[i], world, path});
+            todo_.push_back({children[i], world, path, visit.depth + 1});
     }
 
     // Node name, else mesh name, else "mesh3"; without a mesh "node3".

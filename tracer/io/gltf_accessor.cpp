@@ -43,10 +43,10 @@ GltfAccessor::GltfAccessor(GltfDocument& document, std::size_t index, std::strin
     }
     count_ = static_cast<std::size_t>(count);
     normalized_ = boolean(json_, "normalized", false);
+    base_.component = component_type(json_);
     if (json_.find("bufferView")) {
-        base_ = array(document, json_, count_, components_);
+        base_ = array(document, json_, count_, components_, base_.component);
     } else {
-        base_.component = component_type(json_);
         if (count > kMaxZeros) json_.need("count").fail("too many elements without a bufferView");
     }
     if (const std::optional<JsonValue> sparse = json_.find("sparse")) {
@@ -55,17 +55,18 @@ GltfAccessor::GltfAccessor(GltfDocument& document, std::size_t index, std::strin
 }
 
 GltfAccessor::Array GltfAccessor::array(GltfDocument& document, const JsonValue& json,
-                                        std::size_t count, std::size_t components) const {
+                                        std::size_t count, std::size_t components,
+                                        Component component) {
     Array result;
     const std::size_t view_index = document.index(json.need("bufferView"), "bufferViews");
     const std::string_view bytes = document.buffer_view(view_index);
-    // The values of sparse elements have the accessor's own type.
-    result.component = component_type(json.find("componentType") ? json : json_);
+    result.component = component;
     const std::size_t element_size = components * size_of(result.component);
     const JsonValue& view = document.array("bufferViews")[view_index];
     const std::uint64_t stride = whole_number(view, "byteStride", element_size);
     const std::uint64_t offset = whole_number(json, "byteOffset", 0);
     constexpr std::uint64_t kLargestStride = 252;  // by the specification
+    if (stride < element_size) view.need("byteStride").fail("is less than an element");
     if (stride > std::max<std::uint64_t>(kLargestStride, element_size)) {
         view.need("byteStride").fail("must be at most 252");
     }
@@ -84,9 +85,11 @@ void GltfAccessor::read_sparse(GltfDocument& document, const JsonValue& sparse) 
     const std::uint64_t count = whole_number(sparse.need("count"));
     if (count > count_) sparse.need("count").fail("more than the accessor has elements");
     const JsonValue indices = sparse.need("indices");
-    const Array where = array(document, indices, static_cast<std::size_t>(count), 1);
-    replacements_ =
-        array(document, sparse.need("values"), static_cast<std::size_t>(count), components_);
+    const Array where =
+        array(document, indices, static_cast<std::size_t>(count), 1, component_type(indices));
+    // The values have the accessor's own type.
+    replacements_ = array(document, sparse.need("values"), static_cast<std::size_t>(count),
+                          components_, base_.component);
     for (std::size_t i = 0; i < count; ++i) {
         const double index = read(where.data + i * where.stride, where.component);
         const bool ascending =

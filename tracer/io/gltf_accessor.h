@@ -51,8 +51,10 @@ private:
         Component component = Component::float32;
     };
 
-    [[nodiscard]] Array array(GltfDocument& document, const JsonValue& json, std::size_t count,
-                              std::size_t components) const;
+    // The elements that `json` (an accessor, sparse indices or sparse values) describes.
+    [[nodiscard]] static Array array(GltfDocument& document, const JsonValue& json,
+                                     std::size_t count, std::size_t components,
+                                     Component component);
     void read_sparse(GltfDocument& document, const JsonValue& sparse);
     [[nodiscard]] const char* element(std::size_t index) const;
     [[nodiscard]] double value(const char* element, std::size_t component) const;

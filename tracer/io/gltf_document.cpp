@@ -209,10 +209,11 @@ std::string_view GltfDocument::load_buffer(std::size_t index) {
         decoded_.push_back(*std::move(bytes));
         return decoded_.back();
     }
-    if (text.find("://") != std::string_view::npos)
-        uri->fail("only files beside this one are read");
+    const std::filesystem::path relative(percent_decoded(text));
+    if (text.find("://") != std::string_view::npos || relative.is_absolute())
+        uri->fail("must be a path relative to this file");
     try {
-        beside_.push_back(read_file(path_.parent_path() / percent_decoded(text)));
+        beside_.push_back(read_file(path_.parent_path() / relative));
     } catch (const FileError& error) {
         uri->fail(error.what());
     }

@@ -113,7 +113,8 @@ private:
 
     double number(std::string_view what) {
         const double value = scanner_.number(what);
-        if (!std::isfinite(value)) scanner_.fail(fmt::format("{} is not finite", what));
+        if (!std::isfinite(static_cast<float>(value)))
+            scanner_.fail(fmt::format("{} is not finite", what));
         return value;
     }
 

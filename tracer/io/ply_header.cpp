@@ -120,7 +120,7 @@ private:
 
     [[nodiscard]] PlyType type(std::string_view word) const {
         const auto* const known = std::find_if(kTypeNames.begin(), kTypeNames.end(),
-                                        [&](const TypeName& t) { return t.name == word; });
+                                               [&](const TypeName& t) { return t.name == word; });
         if (known == kTypeNames.end()) scanner_.fail(in_quotes(word) + " is no PLY type");
         return known->type;
     }

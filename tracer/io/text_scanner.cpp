@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <system_error>
@@ -28,6 +27,17 @@ std::optional<double> parse_microsoft(std::string_view word) {
     return negative ? -value : value;
 }
 
+// What a well-formed number beyond double's range stands for: 0 with a negative exponent or,
+// without any, where nothing but zeros stands before the point.
+double beyond_double(std::string_view word) {
+    const std::size_t exponent = word.find_first_of("eE");
+    const bool small = exponent != std::string_view::npos
+                           ? word.find('-', exponent) != std::string_view::npos
+                           : word.find_first_of("123456789") > word.find('.');
+    const double size = small ? 0.0 : std::numeric_limits<double>::infinity();
+    return word.front() == '-' ? -size : size;
+}
+
 }  // namespace
 
 std::optional<double> parse_number(std::string_view word) {
@@ -38,9 +48,8 @@ std::optional<double> parse_number(std::string_view word) {
     const auto [stop, error] = std::from_chars(word.data(), end, value);
     if (stop != end) return parse_microsoft(whole);
     if (error == std::errc()) return value;
-    // Too large or too small for a double: infinity or (nearly) 0, as strtod says.
-    if (error == std::errc::result_out_of_range)
-        return std::strtod(std::string(word).c_str(), nullptr);
+    // Too large or too small for a double: infinity or 0.
+    if (error == std::errc::result_out_of_range) return beyond_double(word);
     return std::nullopt;
 }
 

@@ -90,8 +90,16 @@ std::string unsupported_image_name(const std::filesystem::path& file) {
     return "images are written as .png or .exr, not \"" + file.extension().string() + "\"";
 }
 
+std::string unsupported_image(const std::filesystem::path& file, ImageSize size) {
+    std::string problem = unsupported_image_name(file);
+    if (problem.empty() && lower_extension(file) == ".png" && !fits_png(size)) {
+        problem = "too large for a PNG: write .exr instead";
+    }
+    return problem;
+}
+
 void write_image(const Image& image, const std::filesystem::path& file) {
-    if (const std::string problem = unsupported_image_name(file); !problem.empty()) {
+    if (const std::string problem = unsupported_image(file, image.size); !problem.empty()) {
         throw FileError(file.string(), problem);
     }
     if (image.size.rows <= 0 || image.size.cols <= 0) {

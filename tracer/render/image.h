@@ -37,5 +37,7 @@ std::uint8_t srgb_byte(float linear);
 void write_image(const Image& image, const std::filesystem::path& file);
 // "" if write_image can write to that name, else what is wrong with it.
 std::string unsupported_image_name(const std::filesystem::path& file);
+// The same for an image of this size: a PNG holds up to 1 GiB of uncompressed bytes.
+std::string unsupported_image(const std::filesystem::path& file, ImageSize size);
 
 }  // namespace raypick

@@ -8,6 +8,8 @@
 
 namespace raypick {
 
+// False beyond what the PNG encoder can count.
+bool fits_png(ImageSize size);
 // The bytes of an 8-bit sRGB PNG file. Throws Error if they can't be made.
 std::vector<std::uint8_t> png_bytes(const Image& image);
 

@@ -20,7 +20,13 @@
 
 namespace raypick {
 
+bool fits_png(ImageSize size) {
+    constexpr std::int64_t kLargest = 1 << 30;  // stb counts bytes in an int
+    return (std::int64_t{3} * size.cols + 1) * size.rows <= kLargest;
+}
+
 std::vector<std::uint8_t> png_bytes(const Image& image) {
+    if (!fits_png(image.size)) throw Error("too large for a PNG: write .exr instead");
     std::vector<std::uint8_t> rgb;
     rgb.reserve(3 * image.colour.size());
     for (const glm::vec3& c : image.colour) {

@@ -96,8 +96,8 @@ public:
           rays_(camera, size),
           lights_(effective_lights(accel_->scene(), camera)) {}
 
-    [[nodiscard]] TracedRay pixel(Pixel p, RayCounts& counts) const {
-        return trace(*accel_, lights_, settings_, rays_.ray(pixel_centre(p)), counts);
+    [[nodiscard]] TracedRay pixel(Pixel p, RayCounts& counts, const std::stop_token& stop) const {
+        return trace(*accel_, lights_, settings_, rays_.ray(pixel_centre(p)), counts, stop);
     }
     [[nodiscard]] const Camera& camera() const { return camera_; }
     [[nodiscard]] ImageSize size() const { return size_; }
@@ -180,11 +180,12 @@ void RenderJob::State::coarse_tile(const Tile& tile) {
     const ImageSize size = tracer.size();
     Image part = make_image(tile.size());
     RayCounts not_counted;  // these pixels are traced again
+    const std::stop_token token = stop.get_token();
     for (int row = 0; row < part.size.rows; row += kCoarseStep) {
         for (int col = 0; col < part.size.cols; col += kCoarseStep) {
-            if (stop.stop_requested()) return;
+            if (token.stop_requested()) return;
             const Pixel sample = coarse_sample({tile.row_begin + row, tile.col_begin + col}, size);
-            const TracedRay traced = tracer.pixel(sample, not_counted);
+            const TracedRay traced = tracer.pixel(sample, not_counted, token);
             for (int r = row; r < std::min(row + kCoarseStep, part.size.rows); ++r) {
                 for (int c = col; c < std::min(col + kCoarseStep, part.size.cols); ++c) {
                     store(part, part.size.index({r, c}), traced);
@@ -198,11 +199,12 @@ void RenderJob::State::coarse_tile(const Tile& tile) {
 void RenderJob::State::fine_tile(const Tile& tile) {
     Image part = make_image(tile.size());
     RayCounts counts;
+    const std::stop_token token = stop.get_token();
     for (int row = 0; row < part.size.rows; ++row) {
         for (int col = 0; col < part.size.cols; ++col) {
-            if (stop.stop_requested()) return;
+            if (token.stop_requested()) return;
             const Pixel pixel{tile.row_begin + row, tile.col_begin + col};
-            store(part, part.size.index({row, col}), tracer.pixel(pixel, counts));
+            store(part, part.size.index({row, col}), tracer.pixel(pixel, counts, token));
         }
     }
     publish(tile, part, counts, true);
@@ -210,6 +212,7 @@ void RenderJob::State::fine_tile(const Tile& tile) {
 
 void RenderJob::State::publish(const Tile& tile, const Image& part, const RayCounts& counts,
                                bool final) {
+    if (stop.stop_requested()) return;  // the last pixel may be half traced
     const std::lock_guard lock(mutex);
     copy_tile(part, tile, image);
     if (final) {
@@ -265,6 +268,7 @@ bool RenderJob::snapshot(Image& image, std::uint64_t& known) const {
 
 Pixel RenderJob::shown_pixel(Pixel pixel) const {
     const std::lock_guard lock(state_->mutex);
+    if (!state_->image.size.contains(pixel)) return pixel;
     if (state_->done[state_->image.size.index(pixel)] != 0) return pixel;
     return coarse_sample(pixel, state_->image.size);
 }

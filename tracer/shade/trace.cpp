@@ -67,12 +67,13 @@ std::optional<glm::vec3> refract_direction(const ShadingPoint& point) {
 class Tracer {
 public:
     Tracer(const Accel& accel, std::span<const Light> lights, const RenderSettings& settings,
-           RayCounts& counts)
+           RayCounts& counts, const std::stop_token& stop)
         : accel_(accel),
           scene_(accel.scene()),
           lights_(lights),
           settings_(settings),
-          counts_(counts) {}
+          counts_(counts),
+          stop_(stop) {}
 
     TracedRay eye_ray(const Ray& ray) {
         ++counts_.eye;
@@ -93,6 +94,7 @@ public:
 
 private:
     glm::vec3 secondary_ray(const ShadingPoint& from, const glm::vec3& direction, int depth) {
+        if (stop_.stop_requested()) return glm::vec3(0.0f);
         Ray ray;
         ray.origin = offset_origin(from.surface, direction);
         ray.direction = direction;
@@ -152,6 +154,7 @@ private:
     std::span<const Light> lights_;
     const RenderSettings& settings_;
     RayCounts& counts_;
+    const std::stop_token& stop_;
 };
 
 }  // namespace
@@ -167,8 +170,8 @@ RayCounts& RayCounts::operator+=(const RayCounts& other) {
 }
 
 TracedRay trace(const Accel& accel, std::span<const Light> lights, const RenderSettings& settings,
-                const Ray& ray, RayCounts& counts) {
-    return Tracer(accel, lights, settings, counts).eye_ray(ray);
+                const Ray& ray, RayCounts& counts, const std::stop_token& stop) {
+    return Tracer(accel, lights, settings, counts, stop).eye_ray(ray);
 }
 
 glm::vec3 phong(const Material& material, const glm::vec3& normal, const glm::vec3& to_light,

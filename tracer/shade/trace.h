@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <span>
+#include <stop_token>
 
 namespace raypick {
 
@@ -34,9 +35,10 @@ struct TracedRay {
 };
 
 // Follows an eye ray (depth 1) through the scene. `lights` as from effective_lights. Thread-safe;
-// adds the rays it shot to `counts`.
+// adds the rays it shot to `counts`. Glass may spawn 2^depth rays: once `stop` is requested no more
+// are shot, and the result is worthless.
 TracedRay trace(const Accel& accel, std::span<const Light> lights, const RenderSettings& settings,
-                const Ray& ray, RayCounts& counts);
+                const Ray& ray, RayCounts& counts, const std::stop_token& stop = {});
 
 // Phong's diffuse and specular terms for a light of colour 1; 0 if it shines from behind. All
 // directions are unit; `normal` is the shading normal on the eye's side. The GLSL twin is phong()

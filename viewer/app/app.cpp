@@ -254,8 +254,10 @@ void App::save_picture(const std::filesystem::path& file) {
 
 void App::update_hover() {
     const std::optional<Pixel> pixel = input_.hover();
-    if (pixel == hover_.pixel && view_.shown() == hover_.frame) return;
-    hover_ = {pixel, view_.shown(), pixel ? view_.pick(*pixel) : std::nullopt};
+    const std::optional<Pixel> sampled =
+        pixel ? std::optional(view_.sampled_pixel(*pixel)) : std::nullopt;
+    if (sampled == hover_.sampled && view_.shown() == hover_.frame) return;
+    hover_ = {sampled, view_.shown(), pixel ? view_.pick(*pixel) : std::nullopt};
 }
 
 std::vector<ObjectId> App::selected_objects() const {

@@ -28,7 +28,7 @@ public:
 private:
     // What the cursor rests on, and when that was found out.
     struct Hover {
-        std::optional<Pixel> pixel;
+        std::optional<Pixel> sampled;  // the pixel whose sample is shown under the cursor
         std::optional<ShownFrame> frame;
         std::optional<PixelPick> pick;
     };

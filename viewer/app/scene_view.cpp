@@ -118,14 +118,20 @@ void SceneView::present(const ViewRect& view, int framebuffer_rows,
 
 std::optional<PixelPick> SceneView::pick(Pixel pixel) const {
     if (!shown_ || !shown_->size.contains(pixel)) return std::nullopt;
-    const Pixel sampled = shown_->traced ? preview_.shown_pixel(pixel) : pixel;
+    const Pixel sampled = sampled_pixel(pixel);
     return PixelPick{sampled, pick_pixel(*shown_->accel, shown_->camera, shown_->size, sampled)};
+}
+
+Pixel SceneView::sampled_pixel(Pixel pixel) const {
+    return shown_ && shown_->traced ? preview_.shown_pixel(pixel) : pixel;
 }
 
 Image SceneView::picture() {
     if (!shown_) return {};
     if (!shown_->traced) return rasterizer_.read_image();
     preview_.update(presenter_, true);
+    // Picks go by the picture on the GPU, which may be another camera's now.
+    if (shows_trace(shown_->size)) shown_->camera = preview_.shown()->camera;
     return preview_.image();
 }
 

@@ -46,6 +46,8 @@ public:
     [[nodiscard]] const std::optional<ShownFrame>& shown() const { return shown_; }
     // What is under a pixel of it: the pick of the pixel whose ray is shown there.
     [[nodiscard]] std::optional<PixelPick> pick(Pixel pixel) const;
+    // The pixel whose sample is shown at `pixel`: another one while a traced preview is coarse.
+    [[nodiscard]] Pixel sampled_pixel(Pixel pixel) const;
     // The shown picture itself.
     [[nodiscard]] Image picture();
 

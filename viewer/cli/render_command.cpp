@@ -151,7 +151,7 @@ void check_memory(ImageSize size) {
 
 int run_render(const RenderCommand& command) {
     check_memory(command.size);
-    const RenderOutput output(command.output);
+    const RenderOutput output(command.output, command.size);
     const Interrupt interrupt;
     try {
         render_to(output, command, interrupt);

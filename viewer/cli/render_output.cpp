@@ -36,11 +36,11 @@ void check_writable(const std::filesystem::path& file) {
 
 }  // namespace
 
-RenderOutput::RenderOutput(const std::string& output)
+RenderOutput::RenderOutput(const std::string& output, ImageSize size)
     : file_(output), to_standard_output_(output == "-") {
-    if (to_standard_output_) return;
-    const std::string problem = unsupported_image_name(file_);
+    const std::string problem = unsupported_image(to_standard_output_ ? "-.png" : file_, size);
     if (!problem.empty()) throw UsageError("--output=" + output + ": " + problem);
+    if (to_standard_output_) return;
     check_writable(file_);
 }
 

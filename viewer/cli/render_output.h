@@ -14,7 +14,7 @@ class RenderOutput {
 public:
     // Throws UsageError if the ending names no format that we write, FileError if the place can't
     // be written to.
-    explicit RenderOutput(const std::string& output);
+    RenderOutput(const std::string& output, ImageSize size);
 
     // Throws FileError; a file that was there before is then still there.
     void write(const Image& image) const;
