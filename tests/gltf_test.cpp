@@ -133,10 +133,8 @@ Model placed_square() {
 
 class Gltf : public ModelFiles {
 protected:
-    LoadedScene load_model(const Model& model) const { return load("a.gltf", model.text()); }
-    std::string complaint_about(const Model& model) const {
-        return complaint("a.gltf", model.text());
-    }
+    LoadedScene load_model(const Model& model) { return load("a.gltf", model.text()); }
+    std::string complaint_about(const Model& model) { return complaint("a.gltf", model.text()); }
 };
 
 // --- Containers ---------------------------------------------------------------------------------
@@ -399,7 +397,7 @@ TEST_F(Gltf, WhatIsNotReadIsAWarning) {
 
 class GltfMaterials : public Gltf {
 protected:
-    Material material(const Json& json) const {
+    Material material(const Json& json) {
         Model model = placed_square();
         model.json["materials"] = {json};
         return load_model(model).scene.materials.at(0);

@@ -10,6 +10,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -31,19 +32,19 @@ protected:
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
-    std::filesystem::path write(const std::string& name, std::string_view text) const {
+    std::filesystem::path write(const std::string& name, std::string_view text) {
         std::filesystem::create_directories((folder_ / name).parent_path());
         std::ofstream(folder_ / name, std::ios::binary) << text;
         return folder_ / name;
     }
 
     LoadedScene load(const std::string& name, std::string_view text,
-                     const LoadOptions& options = {}) const {
+                     const LoadOptions& options = {}) {
         return load_scene(write(name, text), options);
     }
 
     // What load_scene complains about, without the file's name; "" if it doesn't.
-    std::string complaint(const std::string& name, std::string_view text) const {
+    std::string complaint(const std::string& name, std::string_view text) {
         const std::filesystem::path file = write(name, text);
         try {
             load_scene(file);
@@ -56,7 +57,7 @@ protected:
 
     // Every beginning of a file, and the file with a few bytes changed, either loads or is refused
     // with a FileError; nothing else is thrown and nothing crashes.
-    void expect_no_crash(const std::string& name, const std::string& text) const {
+    void expect_no_crash(const std::string& name, const std::string& text) {
         for (std::size_t size = 1; size < text.size(); ++size)
             try_to_load(name, text.substr(0, size), fmt::format("the first {} bytes", size));
         for (unsigned seed = 0; seed < 500; ++seed) {
@@ -71,8 +72,7 @@ protected:
     std::filesystem::path folder_;
 
 private:
-    void try_to_load(const std::string& name, const std::string& text,
-                     const std::string& what) const {
+    void try_to_load(const std::string& name, const std::string& text, const std::string& what) {
         try {
             load_scene(write(name, text));
         } catch (const FileError& error) {
@@ -110,10 +110,9 @@ inline std::size_t placed_triangles(const Scene& scene) {
 }
 
 inline bool any_contains(const std::vector<std::string>& texts, std::string_view part) {
-    for (const std::string& text : texts) {
-        if (text.find(part) != text.npos) return true;
-    }
-    return false;
+    return std::any_of(texts.begin(), texts.end(), [&](const std::string& text) {
+        return text.find(part) != std::string::npos;
+    });
 }
 
 }  // namespace raypick

@@ -135,7 +135,7 @@ TEST(CreaseNormals, WeldsEqualPositions) {
 
 TEST(CreaseNormals, MinusZeroIsZero) {
     MeshData data = folded(10.0);
-    data.positions.push_back({-0.0f, 0.0f, -0.0f});
+    data.positions.emplace_back(-0.0f, 0.0f, -0.0f);
     data.triangles[2].x = 6;
     data.triangles[3].x = 6;
     EXPECT_EQ(with_crease_normals(data, 30.0).positions.size(), 6u);
@@ -171,8 +171,8 @@ TEST(CreaseNormals, DegenerateTrianglesTakeNoPart) {
     const MeshData clean = with_crease_normals(folded(29.0), 30.0);
     MeshData dirty = folded(29.0);
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    dirty.positions.push_back({7, 7, 7});
-    dirty.positions.push_back({nan, 0, 0});
+    dirty.positions.emplace_back(7, 7, 7);
+    dirty.positions.emplace_back(nan, 0, 0);
     dirty.triangles.insert(dirty.triangles.begin(), {1, 1, 2});
     dirty.triangles.emplace_back(0, 1, 7);
     dirty.triangles.emplace_back(6, 6, 6);

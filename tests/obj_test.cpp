@@ -375,7 +375,7 @@ TEST_F(Mtl, LibrariesAreFoundByAwkwardNames) {
         EXPECT_EQ(loaded.scene.materials[0].diffuse, glm::vec3(1, 0, 0)) << name;
     }
     write("m.mtl", red);
-    for (const char* name : {"b.mtl m.mtl", "C:\\users\\me\\m.mtl", "/home/me/m.mtl"}) {
+    for (const char* name : {"b.mtl m.mtl", R"(C:\users\me\m.mtl)", "/home/me/m.mtl"}) {
         const LoadedScene loaded = load("a.obj", fmt::format("mtllib {}\n", name) + rest);
         EXPECT_EQ(loaded.scene.materials[0].diffuse, glm::vec3(1, 0, 0)) << name;
     }
