@@ -50,7 +50,7 @@ public:
         friend bool operator==(const Colour&, const Colour&) = default;
     };
     [[nodiscard]] std::vector<Colour> screenshot() const;  // row-major
-    // True once the screen shows something else than `before` and keeps still.
+    // True once the screen shows something else than `before` (empty: anything) and keeps still.
     [[nodiscard]] bool wait_for_change(const std::vector<Colour>& before,
                                        double seconds = 60.0) const;
     [[nodiscard]] std::size_t count_pixels(bool (*wanted)(const Colour&)) const;

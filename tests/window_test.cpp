@@ -264,6 +264,7 @@ TEST_F(WindowTest, HiddenPanelsLeaveTheWholeWindowToTheView) {
 TEST_F(WindowTest, AFileThatCannotBeReadIsShownAndTheWindowGoesOn) {
     start(folder_ / "nothing.obj");
     ASSERT_TRUE(desktop_->wait_for_title("raypick - error"));
+    ASSERT_TRUE(desktop_->wait_for_change({}));  // until it is drawn
     const auto message = desktop_->screenshot();
     desktop_->key("Return");
     ASSERT_TRUE(desktop_->wait_for_title("raypick"));

@@ -240,10 +240,21 @@ void App::ask_for_picture_name() {
     PathDialog dialog;
     dialog.purpose = PathDialog::Purpose::save;
     dialog.name = picture_stem() + ".png";
-    dialog.subject = fmt::format("The {} picture, {} x {} pixels.",
-                                 view_.shown()->traced ? "ray-traced" : "OpenGL",
-                                 view_.shown()->size.cols, view_.shown()->size.rows);
+    dialog.subject = picture_description();
     overlay_ = dialog;
+}
+
+std::string App::picture_description() const {
+    const ShownFrame& frame = *view_.shown();
+    const PreviewStatus trace = view_.trace_status();
+    std::string text =
+        fmt::format("The {} picture, {} x {} pixels.", frame.traced ? "ray-traced" : "OpenGL",
+                    frame.size.cols, frame.size.rows);
+    if (frame.traced && trace.state != PreviewStatus::State::finished) {
+        text += fmt::format(" It is unfinished: {} %.",
+                            static_cast<int>(100 * trace.progress.fraction));
+    }
+    return text;
 }
 
 void App::save_picture(const std::filesystem::path& file) {

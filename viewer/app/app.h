@@ -56,6 +56,8 @@ private:
     void ask_for_picture_name();
     void save_picture(const std::filesystem::path& file);
     [[nodiscard]] std::string picture_stem() const;
+    // Of the shown frame.
+    [[nodiscard]] std::string picture_description() const;
 
     void update_hover();
     void draw();
