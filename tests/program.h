@@ -32,8 +32,7 @@ public:
     }
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     // Writes a file into it.
-    [[nodiscard]] std::filesystem::path write(const std::string& name,
-                                              const std::string& text) const;
+    std::filesystem::path write(const std::string& name, const std::string& text) const;
     // Names of what is in it, sorted.
     [[nodiscard]] std::vector<std::string> names() const;
 
