@@ -78,8 +78,8 @@ Mesh make_mesh(std::string name, MeshData data, std::vector<Part> parts = {});
 Mesh borrow_mesh(std::string name, std::span<const glm::vec3> positions,
                  std::span<const glm::uvec3> triangles, std::span<const glm::vec3> normals = {});
 
-// Throws Error if an index is out of range, an array has the wrong length, the parts don't cover the
-// triangles or there are more than 2^30 of these; the message names the first offender.
+// Throws Error if an index is out of range, an array has the wrong length, the parts don't cover
+// the triangles or there are more than 2^30 of these; the message names the first offender.
 void check_mesh(const Mesh& mesh);
 
 // The part that holds a triangle; nullptr if the mesh has no parts.
