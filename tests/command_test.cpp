@@ -122,6 +122,7 @@ TEST_F(CommandTest, WrongUsageNamesTheOptionAndExitsWith2) {
         {"pick", {"--ray=0,0,5,0,0,-1", "--eye=1,2,inf"}, "--eye"},
         {"pick", {"--ray=0,0,5,0,0,-1", "--fovy=180"}, "--fovy"},
         {"pick", {"--ray=0,0,5,0,0,-1", "--fovy=0"}, "--fovy"},
+        {"pick", {"--ray=0,0,5,0,0,-1", "--up=0,0,0"}, "--up"},
         {"pick", {"--ray=0,0,5,0,0,-1", "--crease=-1"}, "--crease"},
         {"pick", {"--resolution=9,9", "--pixel=1,1", "--eye=1,1,1", "--look-at=1,1,1"}, "--eye"},
         {"pick", {"--bogus"}, "--bogus"},
@@ -164,6 +165,12 @@ TEST_F(CommandTest, WithoutADisplayTheWindowSaysWhatElseThereIs) {
         EXPECT_THAT(result.err, HasSubstr("raypick render"));
         EXPECT_EQ(line_count(result.err), 1u) << result.err;
     }
+}
+
+TEST_F(CommandTest, AMistypedCommandIsAFileThatIsNotThere) {
+    const ProgramResult result = run_program({"rendr"});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(result.err, "raypick: rendr: no such file\n");
 }
 
 TEST_F(CommandTest, PickAnswersEachPixelInOrder) {

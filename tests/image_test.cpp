@@ -217,6 +217,15 @@ TEST_F(ImageFiles, OtherEndingsAreRefused) {
     EXPECT_TRUE(names().empty());
 }
 
+// The PNG encoder counts bytes in an int.
+TEST_F(ImageFiles, AnImageBeyondAPngIsRefusedByItsSize) {
+    EXPECT_EQ(unsupported_image("x.png", {16384, 16384}), "");
+    EXPECT_EQ(unsupported_image("x.exr", {65535, 65535}), "");
+    EXPECT_EQ(unsupported_image("x.PNG", {65535, 65535}),
+              "too large for a PNG: write .exr instead");
+    EXPECT_NE(unsupported_image("x.jpg", {1, 1}), "");
+}
+
 TEST_F(ImageFiles, AMissingFolderIsAnError) {
     for (const std::string name : {"missing/a.png", "missing/a.exr"}) {
         try {

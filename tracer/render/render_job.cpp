@@ -150,6 +150,7 @@ struct RenderJob::State {
 
     void run(bool coarse_first);
     void coarse_tile(const Tile& tile);
+    void show_coarse();
     void fine_tile(const Tile& tile);
     void publish(const Tile& tile, const Image& part, const RayCounts& counts, bool final);
     [[nodiscard]] double elapsed() const {
@@ -164,7 +165,10 @@ void RenderJob::State::run(bool coarse_first) {
             parallel_for(tiles.size(), tracer.threads(), stop.get_token(),
                          [&](std::size_t i) { (this->*body)(tiles[i]); });
         };
-        if (coarse_first) each_tile(&State::coarse_tile);
+        if (coarse_first) {
+            each_tile(&State::coarse_tile);
+            show_coarse();
+        }
         each_tile(&State::fine_tile);
     } catch (...) {
         thrown = std::current_exception();
@@ -173,6 +177,12 @@ void RenderJob::State::run(bool coarse_first) {
     failure = thrown;
     finished = true;
     seconds = elapsed();
+    if (version > 0) ++version;
+}
+
+void RenderJob::State::show_coarse() {
+    if (stop.stop_requested()) return;
+    const std::lock_guard lock(mutex);
     ++version;
 }
 
@@ -220,7 +230,13 @@ void RenderJob::State::publish(const Tile& tile, const Image& part, const RayCou
         done_count += part.size.pixel_count();
     }
     rays += counts;
-    ++version;
+    // Pieces of a coarse image are not shown: what is between them would be black.
+    if (final) ++version;
+}
+
+Pixel FrameSnapshot::sampled_pixel(Pixel pixel) const {
+    if (!image.size.contains(pixel) || traced[image.size.index(pixel)] != 0) return pixel;
+    return coarse_sample(pixel, image.size);
 }
 
 RenderJob::RenderJob(std::shared_ptr<const Accel> accel, const Camera& camera, ImageSize size,
@@ -258,19 +274,13 @@ RenderProgress RenderJob::progress() const {
     return progress;
 }
 
-bool RenderJob::snapshot(Image& image, std::uint64_t& known) const {
+bool RenderJob::snapshot(FrameSnapshot& frame) const {
     const std::lock_guard lock(state_->mutex);
-    if (known == state_->version) return false;
-    known = state_->version;
-    image = state_->image;
+    if (frame.version == state_->version || state_->version == 0) return false;
+    frame.version = state_->version;
+    frame.image = state_->image;
+    frame.traced = state_->done;
     return true;
-}
-
-Pixel RenderJob::shown_pixel(Pixel pixel) const {
-    const std::lock_guard lock(state_->mutex);
-    if (!state_->image.size.contains(pixel)) return pixel;
-    if (state_->done[state_->image.size.index(pixel)] != 0) return pixel;
-    return coarse_sample(pixel, state_->image.size);
 }
 
 const Camera& RenderJob::camera() const {
@@ -288,8 +298,9 @@ RenderedFrame render(std::shared_ptr<const Accel> accel, const Camera& camera, I
     const RenderProgress progress = job.progress();
     frame.rays = progress.rays;
     frame.seconds = progress.seconds;
-    std::uint64_t known = ~std::uint64_t{0};
-    job.snapshot(frame.image, known);
+    FrameSnapshot snapshot;
+    job.snapshot(snapshot);
+    frame.image = std::move(snapshot.image);
     return frame;
 }
 

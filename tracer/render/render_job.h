@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 namespace raypick {
 
@@ -16,9 +17,20 @@ struct RenderProgress {
     double fraction = 0.0;  // of the full-resolution pixels
     double seconds = 0.0;   // since the start; stops at the end
     RayCounts rays;
-    std::uint64_t version = 0;  // grows whenever the image changed
+    std::uint64_t version = 0;  // grows whenever the image changed; 0: no whole image yet
     bool finished = false;      // ended for whatever reason
     bool cancelled = false;
+};
+
+// What a job has traced so far.
+struct FrameSnapshot {
+    Image image;
+    std::vector<std::uint8_t> traced;  // a pixel: 1 if it shows its own sample
+    std::uint64_t version = 0;
+
+    // The pixel whose sample is shown at `pixel`: itself if it was traced, before that its coarse
+    // block's centre.
+    [[nodiscard]] Pixel sampled_pixel(Pixel pixel) const;
 };
 
 // Traces one frame on worker threads: a coarse image first (one pixel in kCoarseStep x kCoarseStep
@@ -45,12 +57,10 @@ public:
     void wait();
 
     [[nodiscard]] RenderProgress progress() const;
-    // A copy of the image so far. If `known` equals the current version, does nothing and returns
-    // false. Cheap enough for each GUI frame; never waits for the tracer.
-    bool snapshot(Image& image, std::uint64_t& known) const;
-    // The pixel whose sample is shown at `pixel` now: itself once its tile is done, before that its
-    // coarse block's centre.
-    [[nodiscard]] Pixel shown_pixel(Pixel pixel) const;
+    // Brings `frame` up to date. Does nothing and returns false if it is, by its version, or as
+    // long as the coarse image is not whole. Cheap enough for each GUI frame; never waits for the
+    // tracer.
+    bool snapshot(FrameSnapshot& frame) const;
 
     [[nodiscard]] const Camera& camera() const;
     [[nodiscard]] ImageSize size() const;

@@ -95,8 +95,9 @@ LoadCard draw_load_card(const OpenProgress& progress, const UiRegion& view, bool
     ImGui::SetNextWindowSize(ImVec2(width, 0.0f));
     ImGui::Begin("##load", nullptr, kFixed | ImGuiWindowFlags_AlwaysAutoResize);
     draw_text(fmt::format("Opening {}", progress.file.filename().string()));
+    // Half the bar for reading; how far the tree is nobody knows.
     const bool reading = progress.stage == OpenStage::reading;
-    ImGui::ProgressBar(reading ? progress.fraction : 1.0f, ImVec2(-1.0f, 0.0f),
+    ImGui::ProgressBar(reading ? 0.5f * progress.fraction : 0.5f, ImVec2(-1.0f, 0.0f),
                        describe(progress).c_str());
     LoadCard card;
     card.cancelled = ImGui::Button("Cancel");

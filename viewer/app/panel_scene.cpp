@@ -16,9 +16,10 @@ std::string counts(const Scene& scene, const AccelStats& stats) {
     const auto size = [](const auto& list) { return static_cast<double>(list.size()); };
     const std::string lights =
         scene.lights.empty() ? "headlight" : counted(size(scene.lights), "light", "lights");
-    return fmt::format("{}, {}, {}, {}", counted(size(scene.objects), "object", "objects"),
-                       counted(static_cast<double>(stats.triangles), "triangle", "triangles"),
-                       counted(size(scene.materials), "material", "materials"), lights);
+    return fmt::format(
+        "{}, {}, {}, {}", counted(size(scene.objects), "object", "objects"),
+        counted(static_cast<double>(stats.triangles), "stored triangle", "stored triangles"),
+        counted(size(scene.materials), "material", "materials"), lights);
 }
 
 void draw_warnings(const std::vector<std::string>& warnings) {

@@ -50,7 +50,7 @@ void Preview::close() {
     error_.clear();
     shown_.reset();
     shown_job_.reset();
-    image_ = {};
+    frame_ = {};
     job_view_ = {};
     wanted_ = {};
     cancelled_.reset();
@@ -61,7 +61,7 @@ void Preview::retire() {
         job_->cancel();
         retired_.push_back(std::move(job_));
     }
-    version_ = 0;
+    frame_.version = 0;  // of no other job
     job_ended_ = false;
 }
 
@@ -77,8 +77,8 @@ void Preview::update(Presenter& presenter, bool at_once) {
     const bool ended = job_->progress().finished;
     const bool due =
         at_once || !job_shown() || ended || Clock::now() - uploaded_ >= kUploadInterval;
-    if (due && job_->snapshot(image_, version_)) {
-        presenter.upload(image_);
+    if (due && job_->snapshot(frame_)) {
+        presenter.upload(frame_.image);
         uploaded_ = Clock::now();
         shown_ = job_view_;
         shown_job_ = job_;
@@ -93,7 +93,7 @@ void Preview::update(Presenter& presenter, bool at_once) {
 }
 
 Pixel Preview::shown_pixel(Pixel pixel) const {
-    return shown_job_ ? shown_job_->shown_pixel(pixel) : pixel;
+    return shown_ ? frame_.sampled_pixel(pixel) : pixel;
 }
 
 PreviewStatus Preview::status() const {

@@ -49,7 +49,7 @@ public:
     // on the way to another view.
     [[nodiscard]] const PreviewView* shown() const;
     // That picture.
-    [[nodiscard]] const Image& image() const { return image_; }
+    [[nodiscard]] const Image& image() const { return frame_.image; }
     // The pixel whose sample is shown at `pixel`.
     [[nodiscard]] Pixel shown_pixel(Pixel pixel) const;
 
@@ -71,12 +71,11 @@ private:
     PreviewView wanted_;
     std::optional<PreviewView> cancelled_;  // the view that was wanted then
     bool job_ended_ = false;                // and wait() has been asked for its error
-    std::uint64_t version_ = 0;
     std::string error_;
     std::vector<std::shared_ptr<RenderJob>> retired_;  // cancelled, their threads still ending
 
     // The picture on the GPU: of job_, or of the one before as long as job_ has none.
-    Image image_;
+    FrameSnapshot frame_;
     std::optional<PreviewView> shown_;
     std::shared_ptr<RenderJob> shown_job_;
     Clock::time_point uploaded_;

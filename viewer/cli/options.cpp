@@ -107,7 +107,11 @@ void add_camera(CLI::App& app, CameraOverride& camera) {
     };
     add_point("--eye", "Where the camera stands, in the file's coordinates", camera.eye);
     add_point("--look-at", "The point it looks at", camera.at);
-    add_point("--up", "The direction that is up in the image", camera.up);
+    add_value(app, "--up", "X,Y,Z", "The direction that is up in the image",
+              [&camera](const std::string& text) {
+                  camera.up = point_of("--up", text);
+                  if (*camera.up == glm::dvec3(0.0)) refuse("--up", "a direction", text);
+              });
     add_value(app, "--fovy", "DEG", "Vertical field of view, above 0 and below 180 degrees",
               [&camera](const std::string& text) {
                   camera.fovy =

@@ -55,8 +55,9 @@ Frame traced(const RenderCommand& command, const OpenedScene& opened, const Came
     interrupt.check();
 
     Frame frame;
-    std::uint64_t nothing_known = 0;
-    job.snapshot(frame.image, nothing_known);
+    FrameSnapshot snapshot;
+    job.snapshot(snapshot);
+    frame.image = std::move(snapshot.image);
     const RenderProgress progress = job.progress();
     frame.rays = progress.rays;
     frame.build_seconds = built.build_seconds;
