@@ -10,6 +10,7 @@
 #include <atomic>
 #include <chrono>
 #include <thread>
+#include <tuple>
 
 namespace raypick {
 namespace {
@@ -111,8 +112,8 @@ TEST(PictureSaverTest, WritesAndReportsFailure) {
 TEST(PictureSaverTest, ScreenshotsNeverReplaceAFile) {
     const TemporaryFolder folder;
     EXPECT_EQ(free_picture_name(folder.path(), "view"), folder / "view-1.png");
-    folder.write("view-1.png", "");
-    folder.write("view-2.png", "");
+    std::ignore = folder.write("view-1.png", "");
+    std::ignore = folder.write("view-2.png", "");
     EXPECT_EQ(free_picture_name(folder.path(), "view"), folder / "view-3.png");
 }
 

@@ -32,7 +32,8 @@ public:
     }
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     // Writes a file into it.
-    std::filesystem::path write(const std::string& name, const std::string& text) const;
+    [[nodiscard]] std::filesystem::path write(const std::string& name,
+                                              const std::string& text) const;
     // Names of what is in it, sorted.
     [[nodiscard]] std::vector<std::string> names() const;
 

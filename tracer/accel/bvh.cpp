@@ -71,8 +71,8 @@ public:
     [[nodiscard]] std::size_t bin(const BoxRef& ref, int axis) const {
         const float place = (ref.bounds.centre()[axis] - min_[axis]) * scale_[axis];
         // Written so that a NaN goes to the first bin.
-        const float last = static_cast<float>(kBins - 1);
-        return static_cast<std::size_t>(place > 0.0f ? std::min(place, last) : 0.0f);
+        constexpr float kLast = kBins - 1;
+        return static_cast<std::size_t>(place > 0.0f ? std::min(place, kLast) : 0.0f);
     }
 
 private:

