@@ -20,6 +20,7 @@ template <typename T>
 void add_channel(Imf::Header& header, Imf::FrameBuffer& frame, const char* name,
                  Imf::PixelType type, const T* first, std::size_t stride, int cols) {
     header.channels().insert(name, Imf::Channel(type));
+    // OpenEXR only reads. NOLINTNEXTLINE(cppcoreguidelines-pro-type-const-cast)
     auto* base = const_cast<char*>(reinterpret_cast<const char*>(first));
     frame.insert(name, Imf::Slice(type, base, stride, stride * static_cast<std::size_t>(cols)));
 }
