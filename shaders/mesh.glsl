@@ -29,28 +29,51 @@ vec3 weights(vec3 a, vec3 b, vec3 c, vec2 slope) {
     return w / (w.x + w.y + w.z);
 }
 
-Surface closest_surface(vec3 direction, float t_min) {
+#ifdef TEXTURED
+uniform samplerBuffer uvs;  // if has_uvs
+uniform bool has_uvs;
+
+// The mesh's own uv, interpolated, and what the triangle's corners say of its derivatives.
+void set_mesh_frame(inout Surface s, uvec3 corner, vec3 w, vec3 ab, vec3 ac) {
+    if (!has_uvs) return;
+    vec2 a = texelFetch(uvs, int(corner.x)).xy;
+    vec2 b = texelFetch(uvs, int(corner.y)).xy;
+    vec2 c = texelFetch(uvs, int(corner.z)).xy;
+    s.uv = w.x * a + w.y * b + w.z * c;
+    vec2 to_b = b - a;
+    vec2 to_c = c - a;
+    float area = to_b.x * to_c.y - to_b.y * to_c.x;
+    if (area == 0.0) return;
+    set_texture_frame(s, s.uv, (to_c.y * ab - to_b.y * ac) / area,
+                      (to_b.x * ac - to_c.x * ab) / area);
+}
+#endif
+
+Surface closest_surface(Ray ray) {
     uvec4 triangle = texelFetch(triangles, triangle_index);
-    vec3 a = from_eye(triangle.x);
-    vec3 b = from_eye(triangle.y);
-    vec3 c = from_eye(triangle.z);
-    vec3 d = object_direction(direction);
+    vec3 o = object_vector(ray.origin);
+    vec3 a = from_eye(triangle.x) - o;
+    vec3 b = from_eye(triangle.y) - o;
+    vec3 c = from_eye(triangle.z) - o;
+    vec3 d = object_vector(ray.direction);
     vec3 speed = abs(d);
     int fastest = speed.x > speed.y ? (speed.x > speed.z ? 0 : 2) : (speed.y > speed.z ? 1 : 2);
-    d = turned(d, fastest);
+    vec3 td = turned(d, fastest);
     vec3 ta = turned(a, fastest);
     vec3 tb = turned(b, fastest);
     vec3 tc = turned(c, fastest);
-    vec3 w = weights(ta, tb, tc, d.xy / d.z);
+    vec3 w = weights(ta, tb, tc, td.xy / td.z);
 
-    Surface s;
-    s.t = dot(w, vec3(ta.z, tb.z, tc.z)) / d.z;
+    Surface s = no_surface();
+    s.t = dot(w, vec3(ta.z, tb.z, tc.z)) / td.z;
+    if (!(s.t > ray.t_min)) return no_surface();
     vec3 ab = b - a;
     vec3 ac = c - a;
     float scale = max(largest(ab), largest(ac));
     vec3 face = cross(ab / scale, ac / scale);
     s.geometric = scene_normal(face);
     s.shading = s.geometric;
+    s.front = dot(face, d) < 0.0;
     if (has_normals) {
         vec3 n = w.x * texelFetch(normals, int(triangle.x)).xyz +
                  w.y * texelFetch(normals, int(triangle.y)).xyz +
@@ -60,5 +83,9 @@ Surface closest_surface(vec3 direction, float t_min) {
     }
     s.primitive = uint(first_primitive + triangle_index);
     s.material = triangle.w;
-    return s;
+#ifdef TEXTURED
+    set_mesh_frame(s, triangle.xyz, w, ab, ac);
+#endif
+    if (is_there(s)) return s;
+    return no_surface();
 }

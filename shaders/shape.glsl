@@ -1,6 +1,22 @@
-// The shape that this program draws.
+// The shape that this program draws. Each shape's file has
+//     Surface closest_surface(Ray ray)
+// which gives the closest hit beyond ray.t_min that is_there() accepts, else no_surface().
 #include "ray.glsl"
 #include "surface.glsl"
+#ifdef TEXTURED
+#include "cut_out.glsl"
+#endif
+
+// Whether rays see this hit at all; gives it its final material.
+bool is_there(inout Surface s) {
+    if (sides != 0 && (sides == 1) != s.front) return false;
+    if (object_material != kNoMaterial) s.material = object_material;
+#ifdef TEXTURED
+    if (cut_out(s)) return false;
+#endif
+    return true;
+}
+
 #if defined(SHAPE_MESH)
 #include "mesh.glsl"
 #elif defined(SHAPE_SPHERE)

@@ -6,24 +6,10 @@
 uniform vec3 sphere_eye;         // the eye
 uniform float sphere_eye_power;  // dot(eye, eye) - 1, from double precision
 
-Surface closest_surface(vec3 direction, float t_min) {
-    Surface s;
-    s.t = kMiss;
-    s.primitive = 0u;
-    s.material = kNoMaterial;
-    vec3 d = object_direction(direction);
-    float speed = length(d);
-    d /= speed;
-    float b = -dot(sphere_eye, d);
-    vec3 closest = sphere_eye + b * d;
-    float discriminant = 1.0 - dot(closest, closest);
-    if (!(discriminant >= 0.0)) return s;
-    float root = sqrt(discriminant);
-    float q = b < 0.0 ? b - root : b + root;
-    float other = q != 0.0 ? sphere_eye_power / q : 0.0;
-    float near = min(q, other) / speed;
-    s.t = near > t_min ? near : max(q, other) / speed;
-    s.geometric = scene_normal(sphere_eye + (s.t * speed) * d);
-    s.shading = s.geometric;
-    return s;
+#include "unit_sphere.glsl"
+
+Surface closest_surface(Ray ray) {
+    vec3 offset = object_vector(ray.origin);
+    float power = sphere_eye_power + dot(offset, 2.0 * sphere_eye + offset);
+    return closest_on_sphere(ray, sphere_eye + offset, power, 1.0, 0u, kNoMaterial);
 }

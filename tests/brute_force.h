@@ -116,17 +116,29 @@ public:
 
 private:
     void collect(const Object& object, const ObjectRay& ray, std::vector<Candidate>& found) const {
-        if (const auto* instance = std::get_if<MeshInstance>(&object.shape)) {
-            collect_mesh(object, instance->mesh, ray, found);
-        } else if (const auto* sphere = std::get_if<Sphere>(&object.shape)) {
-            add(object, 0, ray, intersect(*sphere, ray), found);
-        } else if (const auto* plane = std::get_if<Plane>(&object.shape)) {
-            add(object, 0, ray, intersect(*plane, ray), found);
-        } else if (const auto* triangle = std::get_if<Triangle>(&object.shape)) {
-            add(object, 0, ray, intersect(*triangle, ray), found);
-        } else {
-            add(object, 0, ray, intersect(std::get<Box>(object.shape), ray), found);
-        }
+        std::visit([&](const auto& shape) { collect(object, shape, ray, found); }, object.shape);
+    }
+
+    template <typename SimpleShape>
+    static void collect(const Object& object, const SimpleShape& shape, const ObjectRay& ray,
+                        std::vector<Candidate>& found) {
+        add(object, {}, ray, intersect(shape, ray), found);
+    }
+    void collect(const Object& object, const MeshInstance& instance, const ObjectRay& ray,
+                 std::vector<Candidate>& found) const {
+        collect_mesh(object, instance.mesh, ray, found);
+    }
+    void collect(const Object& object, const SphereSetInstance& instance, const ObjectRay& ray,
+                 std::vector<Candidate>& found) const {
+        const SphereSet& set = scene_.sphere_sets[instance.set];
+        for (std::uint32_t i = 0; i < set.spheres.size(); ++i)
+            add(object, i, ray, intersect(sphere_of(set, i), ray), found);
+    }
+    void collect(const Object& object, const ConeSetInstance& instance, const ObjectRay& ray,
+                 std::vector<Candidate>& found) const {
+        const ConeSet& set = scene_.cone_sets[instance.set];
+        for (std::uint32_t i = 0; i < set.size(); ++i)
+            add(object, i, ray, intersect(cone_of(set, i), ray), found);
     }
 
     void collect_mesh(const Object& object, MeshId id, const ObjectRay& ray,
@@ -143,12 +155,16 @@ private:
         }
     }
 
-    static void add(const Object& object, std::uint32_t primitive, const ObjectRay& ray,
-                    const ShapeHits& hits, std::vector<Candidate>& found) {
+    // `element`: the shape's number in a mesh or set.
+    static void add(const Object& object, std::optional<std::uint32_t> element,
+                    const ObjectRay& ray, const ShapeHits& hits, std::vector<Candidate>& found) {
         for (int i = 0; i < hits.count; ++i) {
-            const ShapeHit& hit = hits.hit[i];
-            found.push_back({object.id, primitive + hit.primitive, hit.t, hit.uv,
-                             glm::dot(hit.normal, ray.direction) < 0.0});
+            const ShapeHit& hit = hits.hit[static_cast<std::size_t>(i)];
+            const bool front_face = glm::dot(hit.normal, ray.direction) < 0.0;
+            if (object.sides == Sides::front_only && !front_face) continue;
+            if (object.sides == Sides::back_only && front_face) continue;
+            found.push_back(
+                {object.id, element.value_or(hit.primitive), hit.t, hit.uv, front_face});
         }
     }
 

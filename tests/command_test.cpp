@@ -134,6 +134,24 @@ TEST_F(CommandTest, WrongUsageNamesTheOptionAndExitsWith2) {
         {"render", {"--output=-", "--depth=0"}, "--depth"},
         {"render", {"--output=-", "--depth=many"}, "--depth"},
         {"render", {"--output=-", "--threads=-1"}, "--threads"},
+        {"render", {"--output=-", "--sampling=grid"}, "--sampling"},
+        {"render", {"--output=-", "--samples=0"}, "--samples"},
+        {"render", {"--output=-", "--samples=65"}, "--samples"},
+        {"render", {"--output=-", "--samples=2", "--sampling=centre"}, "--samples"},
+        {"render", {"--output=-", "--filter=tent", "--sampling=corners"}, "--filter"},
+        {"render", {"--output=-", "--filter=blur"}, "box|tent|gaussian|mitchell"},
+        {"render", {"--output=-", "--contrast=1.5"}, "--contrast"},
+        {"render", {"--output=-", "--contrast=0.1", "--sampling=stratified"}, "--contrast"},
+        {"render", {"--output=-", "--aperture=-1"}, "--aperture"},
+        {"render", {"--output=-", "--aperture=1", "--sampling=centre"}, "--aperture"},
+        {"render", {"--output=-", "--focus-distance=2"}, "--focus-distance"},
+        {"render", {"--output=-", "--seed=-1"}, "--seed"},
+        {"render", {"--output=-", "--cutoff=2"}, "--cutoff"},
+        {"render", {"--output=-", "--cutoff=0.1", "--no-cutoff"}, "--cutoff"},
+        {"render", {"--output=-", "--glass-shadows=grey"}, "--glass-shadows"},
+        {"render", {"--output=-", "--orthographic=0"}, "--orthographic"},
+        {"render", {"--output=-", "--orthographic=wide"}, "--orthographic"},
+        {"pick", {"--ray=0,0,5,0,0,-1", "--orthographic=-2"}, "--orthographic"},
         {"info", {"--json=maybe"}, "--json"},
         {"info", {"another.obj"}, "another.obj"},
         {"view", {"another.obj"}, "another.obj"},
@@ -419,6 +437,45 @@ TEST_F(CommandTest, StatsAreOneJsonObjectWithTheDocumentedKeys) {
         EXPECT_TRUE(value.is_number_unsigned()) << key;
     }
     EXPECT_GT(stats["memory_bytes"]["peak"].get<double>(), 1e6);
+}
+
+TEST_F(CommandTest, SamplingIsWhatTheOptionsSay) {
+    const std::string output = "--output=" + (folder_ / "a.png").string();
+    const auto stats = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> words = {"--resolution=20,10", output, "--stats=json"};
+        words.insert(words.end(), options.begin(), options.end());
+        return json::parse(run_program(render(words)).out);
+    };
+    EXPECT_EQ(stats({})["rays"]["eye"], 200);
+    EXPECT_EQ(stats({"--sampling=corners"})["rays"]["eye"], 21 * 11);
+    EXPECT_EQ(stats({"--samples=3"})["rays"]["eye"], 9 * 200);
+    EXPECT_EQ(stats({"--filter=tent"})["rays"]["eye"], 16 * 200);
+    EXPECT_EQ(stats({"--aperture=0.1", "--samples=2"})["rays"]["eye"], 4 * 200);
+    const int adaptive = stats({"--contrast=0.1", "--samples=2"})["rays"]["eye"].get<int>();
+    EXPECT_GT(adaptive, 200);
+    EXPECT_LT(adaptive, 5 * 200);
+    EXPECT_EQ(stats({})["nan_pixels"], 0);
+    const json by_depth = stats({"--depth=3"})["rays"]["by_depth"];
+    for (const char* kind : {"reflection", "refraction", "shadow"})
+        EXPECT_EQ(by_depth[kind].size(), 3u) << kind;
+}
+
+// At a height of 10 over 10 rows a pixel is a unit: the near square's half width of 1 and the far
+// one's of 2 are seen in their true size.
+TEST_F(CommandTest, PicksInAnOrthographicView) {
+    const auto object = [&](const std::string& view, const std::string& pixel) {
+        const auto result = run_program(pick({view, "--resolution=10,10", "--pixel=" + pixel}));
+        const json line = json::parse(result.out);
+        return line["hit"].get<bool>() ? line["object"].get<std::string>() : std::string();
+    };
+    EXPECT_EQ(object("--orthographic=10", "4,4"), "near");
+    EXPECT_EQ(object("--orthographic=10", "5,5"), "near");
+    EXPECT_EQ(object("--orthographic=10", "5,6"), "far");
+    EXPECT_EQ(object("--orthographic=10", "3,3"), "far");
+    EXPECT_EQ(object("--orthographic=10", "5,7"), "");
+    EXPECT_EQ(object("--orthographic=10", "2,5"), "");
+    // What is looked at keeps the size that it has at fovy 60 from a distance of 5.
+    EXPECT_EQ(object("--orthographic=5.773502691896258", "3,3"), object("--orthographic", "3,3"));
 }
 
 TEST_F(CommandTest, ShadowsCanBeLeftOut) {

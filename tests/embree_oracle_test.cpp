@@ -235,7 +235,13 @@ TEST(EmbreeOracle, Sponza) {
 
 TEST(EmbreeOracle, Kitchen) {
     RAYPICK_REQUIRE_MODEL("bitterli/kitchen.glb");
-    compare(load_scene(model("bitterli/kitchen.glb")).scene, "kitchen", kRays);
+    // Embree gets no textures: leaves are whole in both.
+    Scene scene = load_scene(model("bitterli/kitchen.glb")).scene;
+    for (Material& m : scene.materials) {
+        m.opacity = 1.0f;
+        m.map(MapSlot::opacity) = {};
+    }
+    compare(std::move(scene), "kitchen", kRays);
 }
 
 TEST(EmbreeOracle, Spheres) {

@@ -143,7 +143,7 @@ TEST(ModelNames, LightsAndCamerasOfGltf) {
     const LoadedScene lights = load_scene(model("gltf/Lights.glb"));
     EXPECT_EQ(lights.scene.lights.size(), 4u);
     RAYPICK_REQUIRE_MODEL("gltf/geometry-camera-light.glb");
-    EXPECT_EQ(load_scene(model("gltf/geometry-camera-light.glb")).scene.cameras.size(), 1u);
+    EXPECT_EQ(load_scene(model("gltf/geometry-camera-light.glb")).scene.cameras.size(), 2u);
 }
 
 TEST(ModelGeometry, TheConcavePolygonIsCoveredOnce) {

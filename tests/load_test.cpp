@@ -41,9 +41,9 @@ TEST_F(Load, ContentDecidesBeforeTheName) {
 
 TEST_F(Load, OtherFilesAreRefusedWithTheEndingsThatAreRead) {
     EXPECT_EQ(complaint("notes.txt", "Dear diary"),
-              "has no format that we read (.json, .obj, .gltf, .glb, .ply, .stl)");
+              "has no format that we read (.json, .obj, .gltf, .glb, .ply, .stl, .nff)");
     EXPECT_THAT(readable_extensions(),
-                ElementsAre(".json", ".obj", ".gltf", ".glb", ".ply", ".stl"));
+                ElementsAre(".json", ".obj", ".gltf", ".glb", ".ply", ".stl", ".nff"));
 }
 
 TEST_F(Load, FilesThatCannotBeRead) {

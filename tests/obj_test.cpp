@@ -358,10 +358,11 @@ TEST_F(Mtl, TrIsOneMinusDAndDWins) {
     EXPECT_EQ(material("Tr 0.9\nd 0.5\n").transmit, glm::vec3(0.5f));
 }
 
-TEST_F(Mtl, TexturesAreOneWarning) {
+TEST_F(Mtl, EachMissingTextureIsAWarning) {
     material("map_Kd a.png\nmap_Bump -bm 0.2 b.png\n");
-    ASSERT_EQ(warnings_.size(), 1u);
-    EXPECT_THAT(warnings_[0], HasSubstr("1 materials have textures"));
+    ASSERT_EQ(warnings_.size(), 2u);
+    EXPECT_THAT(warnings_[0], HasSubstr("a.png"));
+    EXPECT_THAT(warnings_[1], HasSubstr("b.png"));
 }
 
 TEST_F(Mtl, LibrariesAreFoundByAwkwardNames) {

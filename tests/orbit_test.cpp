@@ -1,12 +1,17 @@
 // The camera as the mouse moves it.
 #include "viewer/app/orbit_camera.h"
 
+#include "viewer/app/view_words.h"
+
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <random>
+#include <vector>
 
 namespace raypick {
 namespace {
@@ -208,6 +213,149 @@ TEST(OrbitCameraTest, NearFollowsTheSceneAtEachFrame) {
     camera.zoom(kSize, {150.0, 250.0}, 0.05);
     camera.fit_to_scene(bounds);
     EXPECT_EQ(camera.camera().near, near_for_bounds(camera.camera(), bounds));
+}
+
+// Where points of the pivot's plane are seen, to compare before and after.
+std::optional<ImagePoint> seen(const OrbitCamera& camera, const glm::dvec2& in_plane) {
+    const CameraFrame frame = camera_frame(camera.camera());
+    const glm::dvec3 point = camera.camera().at + in_plane.x * frame.vx + in_plane.y * frame.vy;
+    return project(camera.camera(), kSize, point);
+}
+
+TEST(OrbitCameraTest, TogglingTheProjectionKeepsTheSizeAtThePivot) {
+    OrbitCamera camera(some_camera());
+    camera.fit_to_scene(box(glm::vec3(-20.0f), glm::vec3(20.0f)));
+    const ImagePoint before = *seen(camera, {1.5, -0.7});
+    const Camera perspective = camera.camera();
+    camera.toggle_projection();
+    EXPECT_EQ(camera.camera().projection, Projection::orthographic);
+    EXPECT_NEAR(seen(camera, {1.5, -0.7})->r, before.r, 1e-9);
+    EXPECT_NEAR(seen(camera, {1.5, -0.7})->c, before.c, 1e-9);
+    camera.toggle_projection();
+    EXPECT_EQ(camera.camera().projection, Projection::perspective);
+    expect_near(camera.camera().eye, perspective.eye, 1e-9);
+    expect_near(camera.camera().at, perspective.at, 0.0);
+}
+
+// Whatever one does, no corner of the scene is behind an orthographic eye.
+TEST(OrbitCameraTest, NothingIsBehindAnOrthographicEye) {
+    std::mt19937_64 random(11);
+    std::uniform_real_distribution<double> number(-1.0, 1.0);
+    const Bounds bounds = box({-3.0f, -9.0f, 2.0f}, {14.0f, 1.0f, 40.0f});
+    OrbitCamera camera(some_camera());
+    camera.fit_to_scene(bounds);
+    camera.toggle_projection();
+    for (int i = 0; i < 2000; ++i) {
+        const ImagePoint at{150.0 + 140.0 * number(random), 250.0 + 240.0 * number(random)};
+        switch (i % 5) {
+            case 0:
+                camera.orbit(number(random), number(random));
+                break;
+            case 1:
+                camera.pan(kSize, at, {150.0, 250.0});
+                break;
+            case 2:
+                camera.zoom(kSize, at, std::exp(number(random)));
+                break;
+            case 3:
+                camera.look_from(static_cast<ViewSide>(i / 5 % 6));
+                break;
+            default:
+                camera.look_at({number(random), number(random), number(random)});
+        }
+        camera.fit_to_scene(bounds);
+        ASSERT_NO_THROW(check_camera(camera.camera()));
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 point{(corner & 1) != 0 ? bounds.max.x : bounds.min.x,
+                                   (corner & 2) != 0 ? bounds.max.y : bounds.min.y,
+                                   (corner & 4) != 0 ? bounds.max.z : bounds.min.z};
+            ASSERT_TRUE(project(camera.camera(), kSize, point).has_value()) << i;
+        }
+    }
+}
+
+TEST(OrbitCameraTest, OrthographicPanAndZoomKeepWhatIsUnderTheCursor) {
+    OrbitCamera camera(some_camera());
+    camera.fit_to_scene(box(glm::vec3(-5.0f), glm::vec3(5.0f)));
+    camera.toggle_projection();
+    const ImagePoint cursor{40.0, 480.0};
+    const Ray ray = camera_ray(camera.camera(), kSize, cursor);
+    const glm::dvec3 point(ray.at(7.0f));
+    const double height = camera.camera().height;
+    camera.zoom(kSize, cursor, 0.5);
+    EXPECT_NEAR(camera.camera().height, 0.5 * height, 1e-12);
+    EXPECT_NEAR(project(camera.camera(), kSize, point)->r, cursor.r, 1e-3);
+    EXPECT_NEAR(project(camera.camera(), kSize, point)->c, cursor.c, 1e-3);
+    camera.pan(kSize, cursor, {200.0, 100.0});
+    EXPECT_NEAR(project(camera.camera(), kSize, point)->r, 200.0, 1e-3);
+    EXPECT_NEAR(project(camera.camera(), kSize, point)->c, 100.0, 1e-3);
+}
+
+TEST(OrbitCameraTest, FramingAnOrthographicViewShowsTheWholeBox) {
+    OrbitCamera camera(some_camera());
+    const Bounds bounds = box({10.0f, -3.0f, 2.0f}, {14.0f, -1.0f, 9.0f});
+    camera.fit_to_scene(bounds);
+    camera.toggle_projection();
+    camera.frame(bounds, kSize);
+    EXPECT_EQ(camera.camera().projection, Projection::orthographic);
+    double highest = 1e9;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 point{(corner & 1) != 0 ? bounds.max.x : bounds.min.x,
+                               (corner & 2) != 0 ? bounds.max.y : bounds.min.y,
+                               (corner & 4) != 0 ? bounds.max.z : bounds.min.z};
+        const std::optional<ImagePoint> at = project(camera.camera(), kSize, point);
+        ASSERT_TRUE(at.has_value()) << corner;
+        EXPECT_TRUE(at->r >= 0.0 && at->r <= kSize.rows && at->c >= 0.0 && at->c <= kSize.cols);
+        highest = std::min({highest, at->r, at->c, kSize.rows - at->r, kSize.cols - at->c});
+    }
+    EXPECT_LT(highest, 0.05 * kSize.cols) << "just fits";
+}
+
+TEST(OrbitCameraTest, KeysLookFromTheSides) {
+    struct Case {
+        glm::dvec3 axis;
+        ViewSide side;
+        glm::dvec3 to_eye, up;
+    };
+    const std::vector<Case> cases = {
+        {{0, 1, 0}, ViewSide::front, {0, 0, 1}, {0, 1, 0}},
+        {{0, 1, 0}, ViewSide::back, {0, 0, -1}, {0, 1, 0}},
+        {{0, 1, 0}, ViewSide::right, {1, 0, 0}, {0, 1, 0}},
+        {{0, 1, 0}, ViewSide::left, {-1, 0, 0}, {0, 1, 0}},
+        {{0, 1, 0}, ViewSide::top, {0, 1, 0}, {0, 0, -1}},
+        {{0, 1, 0}, ViewSide::bottom, {0, -1, 0}, {0, 0, 1}},
+        {{0, 0, 1}, ViewSide::front, {0, -1, 0}, {0, 0, 1}},
+        {{0, 0, 1}, ViewSide::right, {1, 0, 0}, {0, 0, 1}},
+        {{0, 0, 1}, ViewSide::top, {0, 0, 1}, {0, 1, 0}},
+    };
+    for (const Case& wanted : cases) {
+        SCOPED_TRACE(static_cast<int>(wanted.side));
+        Camera start = some_camera();
+        start.up = wanted.axis;
+        OrbitCamera camera(start);
+        const double distance = camera.pivot_distance();
+        camera.look_from(wanted.side);
+        const CameraFrame frame = camera_frame(camera.camera());
+        expect_near(frame.vz, wanted.to_eye, 1e-12);
+        expect_near(frame.vy, wanted.up, 1e-12);
+        EXPECT_NEAR(camera.pivot_distance(), distance, 1e-12);
+        EXPECT_EQ(camera.camera().at, start.at);
+        camera.orbit(0.3, 0.2);
+        expect_level(camera.camera(), wanted.axis);
+    }
+}
+
+TEST(ViewWordsTest, SayTheViewExactly) {
+    Camera camera = some_camera();
+    camera.eye.x = 1.0 / 3.0;
+    EXPECT_EQ(view_words(camera, {100.0, 0.0, 0.0}, {90, 160}),
+              "--eye=100.33333333333333,2.5,7 --look-at=100.5,1,-1 --up=0,1,0 --fovy=40 "
+              "--resolution=160,90");
+    camera.projection = Projection::orthographic;
+    camera.height = 2.5;
+    EXPECT_EQ(view_words(camera, glm::dvec3(0.0), {90, 160}),
+              "--eye=0.3333333333333333,2.5,7 --look-at=0.5,1,-1 --up=0,1,0 --orthographic=2.5 "
+              "--resolution=160,90");
 }
 
 }  // namespace

@@ -457,7 +457,7 @@ protected:
     static Bytes present(Presenter& presenter, ImageSize framebuffer_size, const ViewRect& view,
                          std::span<const ObjectId> selected, ObjectId hovered,
                          const OutlineStyle& style = {}) {
-        const Texture target =
+        const GlTexture target =
             make_texture({GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE}, framebuffer_size);
         const GLuint names[] = {target.name()};
         const Framebuffer framebuffer = make_framebuffer(names);

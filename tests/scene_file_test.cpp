@@ -14,6 +14,7 @@
 #include <atomic>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <set>
 
 namespace raypick {
@@ -46,8 +47,12 @@ protected:
     [[nodiscard]] Scene load_objects(const std::string& objects) const {
         return load(fmt::format(R"({{"raypick": 1, "objects": [{}]}})", objects)).scene;
     }
-    // The complaint without the file's name, which it must begin with.
+    // The complaint without the line that it begins with where it isn't a syntax error.
     [[nodiscard]] std::string complaint(const std::string& text) const {
+        return std::regex_replace(complaint_with_line(text), std::regex("^line [0-9]+: "), "");
+    }
+    // The complaint without the file's name, which it must begin with.
+    [[nodiscard]] std::string complaint_with_line(const std::string& text) const {
         try {
             (void)load(text);
         } catch (const FileError& error) {
@@ -417,15 +422,15 @@ TEST_F(SceneFile, UnknownKeys) {
               "/ambiant: unknown key; did you mean \"ambient\"?");
     EXPECT_EQ(complaint_of_objects(R"({"type": "sphere", "radus": 1})"),
               "/objects/0/radus: unknown key; did you mean \"radius\"?");
-    EXPECT_EQ(complaint_of_material(R"("color": 1)"),
-              "/materials/gold/color: unknown key; a material has \"ambient\", \"diffuse\", "
-              "\"specular\", \"shininess\", \"emissive\", \"reflect\", \"transmit\" and \"ior\"");
+    EXPECT_THAT(complaint_of_material(R"("color": 1)"),
+                testing::StartsWith(
+                    "/materials/gold/color: unknown key; a material has \"name\", \"ambient\", "));
     EXPECT_EQ(complaint_of_root(R"("camera": {"eye": [0, 0, 1], "at": [0, 0, 0], "fov": 3})"),
               "/camera/fov: unknown key; did you mean \"fovy\"?");
     EXPECT_EQ(
         complaint_of_root(R"("lights": [{"type": "point", "position": [0, 0, 0], "a/b~c": 3}])"),
-        "/lights/0/a~1b~0c: unknown key; a point light has \"type\", \"name\", \"position\" "
-        "and \"colour\"");
+        "/lights/0/a~1b~0c: unknown key; a point light has \"type\", \"name\", \"colour\", "
+        "\"position\" and \"attenuation\"");
     EXPECT_EQ(complaint_of_objects(
                   R"({"type": "sphere", "radius": 1, "rotate": {"axis": [1, 0, 0], "degree": 3}})"),
               "/objects/0/rotate/degree: unknown key; did you mean \"degrees\"?");
@@ -460,8 +465,8 @@ TEST_F(SceneFile, WrongTypes) {
     EXPECT_EQ(complaint("[1]"), "/: must be a scene (an object), not an array of 1");
     EXPECT_EQ(complaint_of_root(R"("objects": {})"), "/objects: must be an array, not an object");
     EXPECT_EQ(complaint_of_objects("7"), "/objects/0: must be an object with a type, not 7");
-    EXPECT_EQ(complaint_of_root(R"("materials": [])"),
-              "/materials: must be an object, not an array of 0");
+    EXPECT_EQ(complaint_of_root(R"("materials": 1)"), "/materials: must be an object, not 1");
+    EXPECT_EQ(complaint_of_root(R"("materials": [1])"), "/materials/0: must be an object, not 1");
     EXPECT_EQ(complaint_of_material(R"("ior": "glass")"),
               "/materials/gold/ior: must be a positive number, not \"glass\"");
     EXPECT_EQ(
@@ -486,13 +491,16 @@ TEST_F(SceneFile, WrongTypes) {
     EXPECT_EQ(complaint_of_objects(R"({"type": "sphere", "radius": 1, "name": ""})"),
               "/objects/0/name: must not be empty");
     EXPECT_EQ(complaint_of_objects(R"({"type": "cube"})"),
-              "/objects/0/type: must be \"sphere\", \"plane\", \"triangle\", \"box\", \"mesh\" or "
-              "\"instance\", not \"cube\"");
+              "/objects/0/type: must be \"sphere\", \"plane\", \"triangle\", \"box\", \"disk\", "
+              "\"rectangle\", \"cone\", \"cylinder\", \"torus\", \"mesh\", \"spheres\", "
+              "\"cones\" or \"instance\", not \"cube\"");
     EXPECT_EQ(complaint_of_objects(R"({"type": "spehre"})"),
-              "/objects/0/type: must be \"sphere\", \"plane\", \"triangle\", \"box\", \"mesh\" or "
-              "\"instance\", not \"spehre\"; did you mean \"sphere\"?");
-    EXPECT_EQ(complaint_of_root(R"("lights": [{"type": "spot"}])"),
-              "/lights/0/type: must be \"point\" or \"directional\", not \"spot\"");
+              "/objects/0/type: must be \"sphere\", \"plane\", \"triangle\", \"box\", \"disk\", "
+              "\"rectangle\", \"cone\", \"cylinder\", \"torus\", \"mesh\", \"spheres\", "
+              "\"cones\" or \"instance\", not \"spehre\"; did you mean \"sphere\"?");
+    EXPECT_EQ(complaint_of_root(R"("lights": [{"type": "lamp"}])"),
+              "/lights/0/type: must be \"point\", \"directional\", \"spot\", \"sphere\" or "
+              "\"rectangle\", not \"lamp\"");
 }
 
 TEST_F(SceneFile, NumbersThatMakeNoSense) {
@@ -568,12 +576,16 @@ TEST_F(SceneFile, NamesThatLeadNowhere) {
     EXPECT_EQ(complaint_of_objects(R"({"type": "sphere", "radius": 1, "material": "lead"})"),
               "/objects/0/material: there is no material \"lead\"");
     EXPECT_EQ(complaint_of_objects(R"({"type": "sphere", "radius": 1, "material": 3})"),
-              "/objects/0/material: must be the name of a material or a material, not 3");
+              "/objects/0/material: must be the name of a material, not 3");
+    EXPECT_EQ(complaint_of_objects(R"({"type": "sphere", "radius": 1, "material": []})"),
+              "/objects/0/material: must be the name of a material or a material, not an array of "
+              "0");
     EXPECT_EQ(complaint_of_objects(R"({"type": "instance", "of": "bal"},
                   {"type": "sphere", "name": "ball", "radius": 1})"),
               "/objects/0/of: there is no object \"bal\"; did you mean \"ball\"?");
-    EXPECT_EQ(complaint_of_objects(R"({"type": "instance", "name": "a", "of": "a"})"),
-              "/objects/0/of: \"a\" is an instance itself: name what it is an instance of");
+    EXPECT_EQ(
+        complaint_of_objects(R"({"type": "instance", "name": "a", "of": "a"})"),
+        "/objects/0/of (of \"a\"): \"a\" is an instance itself: name what it is an instance of");
     EXPECT_EQ(complaint_of_objects(R"({"type": "sphere", "name": "a", "radius": 1},
                   {"type": "sphere", "name": "a", "radius": 2}, {"type": "instance", "of": "a"})"),
               "/objects/2/of: /objects/0 and /objects/1 are both called \"a\"");
@@ -653,9 +665,25 @@ protected:
         if (type == "camera") {
             file["camera"] = value;
         } else if (type == "material") {
+            file["textures"]["board"]["type"] = "checker";
             file["materials"]["wood"] = value;
         } else if (type.ends_with("light")) {
             file["lights"] = {value};
+        } else if (type == "map") {
+            file["textures"]["board"]["type"] = "checker";
+            file["materials"]["wood"]["maps"]["diffuse"] = value;
+        } else if (type.ends_with("_texture")) {
+            file["textures"]["board"] = value;
+        } else if (type.ends_with("_sky")) {
+            file["environment"] = value;
+        } else if (type == "mesh_arrays") {
+            file["meshes"] = {value};
+        } else if (type == "sphere_set") {
+            file["sphere_sets"] = {value};
+        } else if (type == "cone_set") {
+            file["cone_sets"] = {value};
+        } else if (type == "part") {
+            file["sphere_sets"] = {{{"spheres", {{0, 0, 0, 1}}}, {"parts", {value}}}};
         } else if (type == "rotation") {
             file["objects"] = {{{"type", "sphere"}, {"radius", 1}, {"rotate", value}}};
         } else {
@@ -692,8 +720,15 @@ private:
     Json schema_;
 };
 
-const char* const kTypes[] = {"camera", "point_light", "directional_light", "material", "rotation",
-                              "sphere", "plane",       "triangle",          "box",      "instance"};
+const char* const kTypes[] = {"camera",       "point_light",  "directional_light",
+                              "spot_light",   "sphere_light", "rectangle_light",
+                              "material",     "map",          "checker_texture",
+                              "gradient_sky", "rotation",     "sphere",
+                              "plane",        "triangle",     "box",
+                              "disk",         "rectangle",    "cone",
+                              "cylinder",     "torus",        "mesh_arrays",
+                              "sphere_set",   "cone_set",     "part",
+                              "instance"};
 
 TEST_F(Schema, AndReaderKnowTheSameKeys) {
     for (const std::string type : kTypes) {

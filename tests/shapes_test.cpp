@@ -39,8 +39,8 @@ std::vector<ShapeHit> ahead(const S& shape, const ObjectRay& ray) {
     }
     std::vector<ShapeHit> found;
     for (int i = 0; i < hits.count; ++i) {
-        EXPECT_FALSE(std::isnan(hits.hit[i].t));
-        if (hits.hit[i].t > 0.0) found.push_back(hits.hit[i]);
+        EXPECT_FALSE(std::isnan(hits.hit[static_cast<std::size_t>(i)].t));
+        if (hits.hit[static_cast<std::size_t>(i)].t > 0.0) found.push_back(hits.hit[i]);
     }
     return found;
 }

@@ -2,11 +2,17 @@
 raypick_test(transform_test LABELS cpu)
 raypick_test(camera_test LABELS cpu)
 raypick_test(shapes_test LABELS cpu)
+raypick_test(curved_shapes_test LABELS cpu)
 raypick_test(accel_test LABELS cpu)
+raypick_test(sets_test LABELS cpu)
+raypick_test(no_acne_test LABELS cpu)
 raypick_test(accel_threads_test LABELS cpu threads)
 raypick_test(surface_test LABELS cpu)
 raypick_test(trace_test LABELS cpu)
+raypick_test(check_scene_test LABELS cpu)
 raypick_test(render_job_test LABELS cpu threads)
+raypick_test(sampling_test LABELS cpu threads)
+raypick_test(lens_test LABELS cpu)
 
 # Written images are read back.
 find_package(OpenEXR REQUIRED)
@@ -16,6 +22,7 @@ raypick_test(image_test LABELS cpu LIBS OpenEXR::OpenEXR PkgConfig::stb)
 # These open model files.
 if(TARGET raypick_io)
     raypick_test(accel_models_test LABELS data)
+    raypick_test(spd_oracle_test LABELS oracle data TIMEOUT 600)
     # Without Embree the test says so: skipped at home, failed in CI.
     raypick_test(embree_oracle_test LABELS oracle TIMEOUT 600)
     find_package(embree 3 QUIET)

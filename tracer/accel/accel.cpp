@@ -1,65 +1,31 @@
 #include "tracer/accel/accel.h"
 
 #include "tracer/accel/bvh.h"
-#include "tracer/error.h"
+#include "tracer/accel/cut_out.h"
+#include "tracer/accel/searches.h"
+#include "tracer/accel/trees.h"
 #include "tracer/geometry/triangle_test.h"
-#include "tracer/parallel/parallel.h"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
+#include <variant>
 
 namespace raypick {
 
 namespace {
 
-// One mesh's tree, shared by every Accel that uses the same arrays.
-struct MeshTree {
-    const glm::vec3* positions = nullptr;
-    const glm::uvec3* triangles = nullptr;
-    std::size_t triangle_count = 0;
-    Bvh bvh;
-};
-
 // An object as rays meet it.
 struct Instance {
     Transform object_from_world;
     bool identity = true;
-    float slop = 0.0f;  // how far rounding may have moved a ray in object space, per unit
-    const MeshTree* tree = nullptr;
+    bool holes = false;  // it may be cut out
+    float slop = 0.0f;   // how far rounding may have moved a ray in object space, per unit
+    const PrimitiveTree* tree = nullptr;
 };
-
-MeshTree build_tree(const Mesh& mesh, const BuildOptions& options) {
-    constexpr std::size_t kChunk = 1u << 16;
-    MeshTree tree;
-    tree.positions = mesh.positions.data();
-    tree.triangles = mesh.triangles.data();
-    tree.triangle_count = mesh.triangles.size();
-    std::vector<Bounds> boxes(mesh.triangles.size());
-    parallel_for((boxes.size() + kChunk - 1) / kChunk, options.threads, options.stop,
-                 [&](std::size_t chunk) {
-                     const std::size_t end = std::min(boxes.size(), (chunk + 1) * kChunk);
-                     for (std::size_t i = chunk * kChunk; i < end; ++i) {
-                         const glm::uvec3 t = mesh.triangles[i];
-                         const glm::vec3 sum =
-                             mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z];
-                         // A triangle with a NaN is never hit: its box stays empty.
-                         if (!std::isfinite(sum.x + sum.y + sum.z)) continue;
-                         for (int k = 0; k < 3; ++k)
-                             boxes[i].extend(mesh.positions[t[k]]);
-                     }
-                 });
-    if (options.stop.stop_requested()) throw Cancelled();
-    tree.bvh = build_bvh(boxes, options.threads, options.stop);
-    return tree;
-}
-
-bool same_arrays(const MeshTree& tree, const Mesh& mesh) {
-    return tree.positions == mesh.positions.data() && tree.triangles == mesh.triangles.data() &&
-           tree.triangle_count == mesh.triangles.size();
-}
 
 bool inside_clip_planes(const Ray& ray, float t, std::span<const ClipPlane> planes) {
     return std::all_of(planes.begin(), planes.end(), [&](const ClipPlane& plane) {
@@ -67,116 +33,61 @@ bool inside_clip_planes(const Ray& ray, float t, std::span<const ClipPlane> plan
     });
 }
 
-bool admitted(const Ray& ray, const RayQuery& query, const Hit& hit) {
-    if (query.sides == Sides::front_only && !hit.front_face) return false;
-    if (query.sides == Sides::back_only && hit.front_face) return false;
-    return inside_clip_planes(ray, hit.t, query.clip_planes) && query.accept(hit);
+bool shows(Sides sides, bool front_face) {
+    if (sides == Sides::both) return true;
+    return front_face == (sides == Sides::front_only);
 }
 
-float tie_limit(float t) {
-    return static_cast<float>(t * (1.0 + kTieGap));
-}
+// One ray on its way through one object.
+struct Passage {
+    const Scene& scene;
+    const Object& object;
+    const Instance& instance;
+    const Ray& ray;
+    const RayQuery& query;
+    ObjectRay local;
 
-bool precedes(const Hit& a, const Hit& b) {
-    return std::tie(a.object, a.primitive) < std::tie(b.object, b.primitive);
-}
-
-// The searches that a traversal drives: limit() is how far it must look (inclusive), offer() takes
-// an admitted hit and returns true to stop.
-
-// The closest t, and among the hits that tie with it the lowest (object, primitive). A tie's window
-// moves when a closer hit turns up; `ambiguous` says that a hit was dropped that the final window
-// might have held, and that LowestInWindow must decide.
-class ClosestSearch {
-public:
-    explicit ClosestSearch(float t_max) : limit_(t_max) {}
-
-    [[nodiscard]] float limit() const { return limit_; }
-    bool offer(const Hit& hit) {
-        if (hit.t < closest_) {
-            closest_ = hit.t;
-            limit_ = std::min(limit_, tie_limit(closest_));
+    [[nodiscard]] bool admits(const Hit& hit) const {
+        if (!shows(object.sides, hit.front_face) || !shows(query.sides, hit.front_face)) {
+            return false;
         }
-        if (!winner_.valid()) {
-            winner_ = hit;
-        } else if (winner_.t > limit_) {
-            ambiguous_ = ambiguous_ || dropped_;
-            winner_ = hit;
-        } else {
-            dropped_ = true;
-            if (precedes(hit, winner_)) winner_ = hit;
-        }
-        return false;
+        if (!inside_clip_planes(ray, hit.t, query.clip_planes)) return false;
+        if (instance.holes && is_cut_out(scene, object, hit)) return false;
+        return query.accept(hit);
     }
-
-    [[nodiscard]] const Hit& winner() const { return winner_; }
-    [[nodiscard]] bool ambiguous() const { return ambiguous_; }
-
-private:
-    float limit_;
-    float closest_ = std::numeric_limits<float>::infinity();
-    Hit winner_;
-    bool dropped_ = false;
-    bool ambiguous_ = false;
+    [[nodiscard]] bool in_range(float t, float limit) const {
+        return t > ray.t_min && t < ray.t_max && t <= limit;
+    }
 };
 
-class LowestInWindow {
-public:
-    explicit LowestInWindow(float limit) : limit_(limit) {}
-
-    [[nodiscard]] float limit() const { return limit_; }
-    bool offer(const Hit& hit) {
-        if (!winner_.valid() || precedes(hit, winner_)) winner_ = hit;
-        return false;
+// Offers to the search what a shape's intersection found; true: stop. `element` is the shape's
+// number in a set: that is then the primitive, whatever side of the shape was hit.
+template <typename Search>
+bool offer(const Passage& passage, const ShapeHits& hits, std::optional<std::uint32_t> element,
+           Search& search) {
+    for (int i = 0; i < hits.count; ++i) {
+        const ShapeHit& found = hits.hit[static_cast<std::size_t>(i)];
+        const auto t = static_cast<float>(found.t);
+        if (!passage.in_range(t, search.limit())) continue;
+        const Hit hit{passage.object.id, element.value_or(found.primitive), t, glm::vec2(found.uv),
+                      glm::dot(found.normal, passage.local.direction) < 0.0};
+        if (passage.admits(hit) && search.offer(hit)) return true;
     }
-    [[nodiscard]] const Hit& winner() const { return winner_; }
-
-private:
-    float limit_;
-    Hit winner_;
-};
-
-class AnySearch {
-public:
-    explicit AnySearch(float t_max) : limit_(t_max) {}
-
-    [[nodiscard]] float limit() const { return limit_; }
-    bool offer(const Hit&) {
-        found_ = true;
-        return true;
-    }
-    [[nodiscard]] bool found() const { return found_; }
-
-private:
-    float limit_;
-    bool found_ = false;
-};
-
-class AllSearch {
-public:
-    explicit AllSearch(float t_max) : limit_(t_max) {}
-
-    [[nodiscard]] float limit() const { return limit_; }
-    bool offer(const Hit& hit) {
-        hits_.push_back(hit);
-        return false;
-    }
-    [[nodiscard]] std::vector<Hit> sorted() && {
-        std::sort(hits_.begin(), hits_.end(), [](const Hit& a, const Hit& b) {
-            return std::tie(a.t, a.object, a.primitive) < std::tie(b.t, b.object, b.primitive);
-        });
-        return std::move(hits_);
-    }
-
-private:
-    float limit_;
-    std::vector<Hit> hits_;
-};
+    return false;
+}
 
 ObjectRay object_ray(const Instance& instance, const Ray& ray) {
     if (instance.identity) return {glm::dvec3(ray.origin), glm::dvec3(ray.direction)};
     return {instance.object_from_world.point(glm::dvec3(ray.origin)),
             instance.object_from_world.vector(glm::dvec3(ray.direction))};
+}
+
+// What has a tree knows its box already.
+Bounds instance_bounds(const Scene& scene, const Object& object, const PrimitiveTree* tree) {
+    if (tree == nullptr) return object_bounds(scene, object);
+    if (tree->bvh.nodes.empty()) return {};
+    const Bounds& box = tree->bvh.nodes[0].bounds;
+    return world_bounds(object.world_from_object, glm::dvec3(box.min), glm::dvec3(box.max));
 }
 
 bool usable(const Ray& ray) {
@@ -189,40 +100,20 @@ bool usable(const Ray& ray) {
 
 struct Accel::State {
     std::shared_ptr<const Scene> scene;
-    std::vector<std::shared_ptr<const MeshTree>> trees;  // one a mesh
-    std::vector<Instance> instances;                     // one an object
-    Bvh top;                                             // over the finite objects
-    std::vector<std::uint32_t> unbounded;                // infinite planes
+    SceneTrees trees;
+    std::vector<Instance> instances;       // one an object
+    Bvh top;                               // over the finite objects
+    std::vector<std::uint32_t> unbounded;  // infinite planes
     Bounds bounds;
 
-    void build_trees(const BuildOptions& options, const Accel* reuse);
     void place_objects(const BuildOptions& options);
 
     template <typename Search>
     bool trace_object(std::uint32_t index, const Ray& ray, const RayQuery& query,
                       Search& search) const;
     template <typename Search>
-    bool trace_mesh(const Object& object, const Instance& instance, const ObjectRay& local,
-                    const Ray& ray, const RayQuery& query, Search& search) const;
-    template <typename Search>
     void trace(const Ray& ray, const RayQuery& query, Search& search) const;
 };
-
-void Accel::State::build_trees(const BuildOptions& options, const Accel* reuse) {
-    trees.reserve(scene->meshes.size());
-    for (const Mesh& mesh : scene->meshes) {
-        std::shared_ptr<const MeshTree> tree;
-        if (reuse != nullptr) {
-            const auto& known = reuse->state_->trees;
-            const auto found = std::find_if(known.begin(), known.end(), [&](const auto& other) {
-                return same_arrays(*other, mesh);
-            });
-            if (found != known.end()) tree = *found;
-        }
-        if (!tree) tree = std::make_shared<const MeshTree>(build_tree(mesh, options));
-        trees.push_back(std::move(tree));
-    }
-}
 
 void Accel::State::place_objects(const BuildOptions& options) {
     std::vector<Bounds> boxes;
@@ -232,14 +123,13 @@ void Accel::State::place_objects(const BuildOptions& options) {
         Instance instance;
         instance.identity = object.world_from_object.is_identity();
         instance.object_from_world = inverse(object.world_from_object).value_or(Transform{});
-        if (const auto* use = std::get_if<MeshInstance>(&object.shape)) {
-            instance.tree = trees[use->mesh].get();
-        }
+        instance.holes = may_be_cut_out(*scene, object);
+        instance.tree = tree_of(trees, object.shape);
         // Rounding a transformed ray to float moves it by half a unit in the last place of its
         // coordinates; the boxes are widened by several times that.
         if (!instance.identity) instance.slop = 8.0f * 5.9604645e-8f;
         instances.push_back(instance);
-        boxes.push_back(object_bounds(*scene, object));
+        boxes.push_back(instance_bounds(*scene, object, instance.tree));
         if (!boxes.back().empty()) {
             bounds.extend(boxes.back());
         } else if (std::holds_alternative<Plane>(object.shape)) {
@@ -249,34 +139,65 @@ void Accel::State::place_objects(const BuildOptions& options) {
     top = build_bvh(boxes, options.threads, options.stop);
 }
 
+// A shape as rays meet it: itself, or a tree over primitives.
 template <typename Search>
-bool Accel::State::trace_mesh(const Object& object, const Instance& instance,
-                              const ObjectRay& local, const Ray& ray, const RayQuery& query,
-                              Search& search) const {
-    const MeshTree& tree = *instance.tree;
-    if (tree.bvh.nodes.empty()) return false;
-    const glm::vec3 origin(local.origin);
-    const Bounds& box = tree.bvh.nodes[0].bounds;
-    const glm::vec3 reach =
-        glm::max(glm::abs(origin), glm::max(glm::abs(box.min), glm::abs(box.max)));
-    const SlabRay slabs(origin, glm::vec3(local.direction),
-                        instance.slop * std::max({reach.x, reach.y, reach.z}));
-    const ShearedRay sheared = shear(local);
-    return traverse(
-        tree.bvh, slabs, ray.t_min, [&] { return search.limit(); },
-        [&](std::uint32_t primitive) {
-            const glm::uvec3 corner = tree.triangles[primitive];
-            const auto found = intersect_triangle(sheared, glm::dvec3(tree.positions[corner.x]),
-                                                  glm::dvec3(tree.positions[corner.y]),
-                                                  glm::dvec3(tree.positions[corner.z]));
+struct ShapeTrace {
+    const Passage& passage;
+    Search& search;
+
+    template <typename SimpleShape>
+    bool operator()(const SimpleShape& shape) const {
+        return offer(passage, raypick::intersect(shape, passage.local), std::nullopt, search);
+    }
+
+    bool operator()(const SphereSetInstance& instance) const {
+        const SphereSet& set = passage.scene.sphere_sets[instance.set];
+        return down_the_tree([&](std::uint32_t primitive) {
+            const Sphere sphere = sphere_of(set, primitive);
+            return offer(passage, raypick::intersect(sphere, passage.local), primitive, search);
+        });
+    }
+
+    bool operator()(const ConeSetInstance& instance) const {
+        const ConeSet& set = passage.scene.cone_sets[instance.set];
+        return down_the_tree([&](std::uint32_t primitive) {
+            const Cone cone = cone_of(set, primitive);
+            return offer(passage, raypick::intersect(cone, passage.local), primitive, search);
+        });
+    }
+
+    bool operator()(const MeshInstance& instance) const {
+        const Mesh& mesh = passage.scene.meshes[instance.mesh];
+        const ShearedRay sheared = shear(passage.local);
+        return down_the_tree([&](std::uint32_t primitive) {
+            const glm::uvec3 corner = mesh.triangles[primitive];
+            const auto found = intersect_triangle(sheared, glm::dvec3(mesh.positions[corner.x]),
+                                                  glm::dvec3(mesh.positions[corner.y]),
+                                                  glm::dvec3(mesh.positions[corner.z]));
             if (!found) return false;
             const auto t = static_cast<float>(found->t);
-            if (!(t > ray.t_min && t < ray.t_max && t <= search.limit())) return false;
-            const Hit hit{object.id, primitive, t, glm::vec2(found->u, found->v),
+            if (!passage.in_range(t, search.limit())) return false;
+            const Hit hit{passage.object.id, primitive, t, glm::vec2(found->u, found->v),
                           found->front_face};
-            return admitted(ray, query, hit) && search.offer(hit);
+            return passage.admits(hit) && search.offer(hit);
         });
-}
+    }
+
+private:
+    template <typename Leaf>
+    bool down_the_tree(const Leaf& leaf) const {
+        const Bvh& bvh = passage.instance.tree->bvh;
+        if (bvh.nodes.empty()) return false;
+        const glm::vec3 origin(passage.local.origin);
+        const Bounds& box = bvh.nodes[0].bounds;
+        const glm::vec3 reach =
+            glm::max(glm::abs(origin), glm::max(glm::abs(box.min), glm::abs(box.max)));
+        const SlabRay slabs(origin, glm::vec3(passage.local.direction),
+                            passage.instance.slop * std::max({reach.x, reach.y, reach.z}));
+        return traverse(
+            bvh, slabs, passage.ray.t_min, [this] { return search.limit(); }, leaf);
+    }
+};
 
 template <typename Search>
 bool Accel::State::trace_object(std::uint32_t index, const Ray& ray, const RayQuery& query,
@@ -284,28 +205,8 @@ bool Accel::State::trace_object(std::uint32_t index, const Ray& ray, const RayQu
     const Object& object = scene->objects[index];
     if ((object.mask & query.mask) == 0) return false;
     const Instance& instance = instances[index];
-    const ObjectRay local = object_ray(instance, ray);
-    if (instance.tree != nullptr) {
-        return trace_mesh(object, instance, local, ray, query, search);
-    }
-    const ShapeHits hits = std::visit(
-        [&](const auto& shape) -> ShapeHits {
-            if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, MeshInstance>) {
-                return {};
-            } else {
-                return raypick::intersect(shape, local);
-            }
-        },
-        object.shape);
-    for (int i = 0; i < hits.count; ++i) {
-        const ShapeHit& found = hits.hit[i];
-        const auto t = static_cast<float>(found.t);
-        if (!(t > ray.t_min && t < ray.t_max && t <= search.limit())) continue;
-        const Hit hit{object.id, found.primitive, t, glm::vec2(found.uv),
-                      glm::dot(found.normal, local.direction) < 0.0};
-        if (admitted(ray, query, hit) && search.offer(hit)) return true;
-    }
-    return false;
+    const Passage passage{*scene, object, instance, ray, query, object_ray(instance, ray)};
+    return std::visit(ShapeTrace<Search>{passage, search}, object.shape);
 }
 
 template <typename Search>
@@ -324,7 +225,8 @@ Accel::Accel(std::shared_ptr<const Scene> scene, const BuildOptions& options, co
     check_scene(*scene);
     auto state = std::make_unique<State>();
     state->scene = std::move(scene);
-    state->build_trees(options, reuse);
+    state->trees =
+        build_trees(*state->scene, options, reuse != nullptr ? &reuse->state_->trees : nullptr);
     state->place_objects(options);
     state_ = std::move(state);
 }
@@ -382,11 +284,16 @@ AccelStats Accel::stats() const {
     AccelStats stats;
     stats.bytes = state_->top.bytes() + state_->instances.size() * sizeof(Instance);
     stats.nodes = state_->top.nodes.size();
-    for (const auto& tree : state_->trees) {
-        stats.triangles += tree->triangle_count;
-        stats.nodes += tree->bvh.nodes.size();
-        stats.bytes += tree->bvh.bytes();
-    }
+    const auto count = [&stats](const TreeList& trees, std::uint64_t& primitives) {
+        for (const auto& tree : trees) {
+            primitives += tree->count;
+            stats.nodes += tree->bvh.nodes.size();
+            stats.bytes += tree->bvh.bytes();
+        }
+    };
+    count(state_->trees.meshes, stats.triangles);
+    count(state_->trees.sphere_sets, stats.spheres);
+    count(state_->trees.cone_sets, stats.cones);
     return stats;
 }
 

@@ -22,13 +22,15 @@ struct BuildOptions {
 
 struct AccelStats {
     std::uint64_t triangles = 0;  // of unique meshes
+    std::uint64_t spheres = 0;    // of unique sets
+    std::uint64_t cones = 0;
     std::uint64_t nodes = 0;
     std::uint64_t bytes = 0;
 };
 
-// Two levels: one tree a mesh, shared by its instances and by later Accels of an edited scene, and
-// one tree over the objects. All queries are const and may run on many threads at once. A ray with
-// a NaN hits nothing.
+// Two levels: one tree a mesh or set, shared by its instances and by later Accels of an edited
+// scene, and one tree over the objects. All queries are const and may run on many threads at once.
+// A ray with a NaN hits nothing.
 class Accel {
 public:
     // Builds for a snapshot of a scene. Meshes whose arrays also stand in `reuse` keep their trees

@@ -29,8 +29,6 @@ struct Hit {
 // Two surfaces at distances within this relative gap tie: the lowest (object, primitive) wins.
 inline constexpr double kTieGap = 2e-6;
 
-enum class Sides { both, front_only, back_only };
-
 // Keeps the half space dot(normal, p) + d >= 0 (scene space).
 struct ClipPlane {
     glm::vec3 normal{0.0f, 1.0f, 0.0f};
@@ -60,7 +58,7 @@ private:
 // What every query takes. The defaults leave nothing out.
 struct RayQuery {
     std::uint32_t mask = 0xffffffffu;
-    Sides sides = Sides::both;
+    Sides sides = Sides::both;  // on top of the objects' own
     std::span<const ClipPlane> clip_planes;
     AcceptHit accept;
 };

@@ -1,115 +1,81 @@
 #include "tracer/accel/surface.h"
 
-#include "tracer/geometry/triangle_test.h"
+#include "tracer/accel/local_point.h"
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <variant>
 
 namespace raypick {
 
 namespace {
 
-// Object-space position and outward normals, not normalised.
-struct LocalPoint {
-    glm::dvec3 position{0.0};
-    glm::dvec3 geometric_normal{0.0};
-    glm::dvec3 shading_normal{0.0};
-};
-
-// The point a u v of the plane through the corners, exact to double rounding.
-LocalPoint triangle_point(const ObjectRay& ray, const Hit& hit, const glm::dvec3& a,
-                          const glm::dvec3& b, const glm::dvec3& c) {
-    glm::dvec2 uv(hit.uv);
-    if (const auto exact = intersect_triangle(shear(ray), a, b, c)) uv = {exact->u, exact->v};
-    LocalPoint point;
-    point.position = (1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c;
-    point.geometric_normal = glm::cross(b - a, c - a);
-    point.shading_normal = point.geometric_normal;
-    return point;
+// Bound on what rounding did to the point: to float when it was stored, and to double (with room
+// to spare) on the way from the ray through the object's space and back. A secondary ray's own
+// intersection goes the same way, and must find the surface behind it.
+glm::dvec3 rounding_bound(const Transform& world_from_object, const Transform& object_from_world,
+                          const LocalPoint& local, const glm::dvec3& position) {
+    const auto absolute = [](const glm::dmat3& m) {
+        return glm::dmat3(glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2]));
+    };
+    const glm::dvec3 inside = absolute(object_from_world.linear) * glm::abs(position) +
+                              glm::abs(object_from_world.translation) + local.magnitude;
+    const glm::dvec3 reach =
+        absolute(world_from_object.linear) * inside + glm::abs(world_from_object.translation);
+    return glm::abs(position) * 0x1p-24 + reach * 0x1p-47;
 }
 
-// Interpolated where the mesh has normals, turned to the side of the geometric normal.
-glm::dvec3 mesh_shading_normal(const Mesh& mesh, const glm::uvec3& corner, const Hit& hit,
-                               const glm::dvec3& geometric_normal) {
-    if (mesh.normals.empty()) return geometric_normal;
-    const auto u = static_cast<double>(hit.uv.x);
-    const auto v = static_cast<double>(hit.uv.y);
-    const glm::dvec3 normal = (1.0 - u - v) * glm::dvec3(mesh.normals[corner.x]) +
-                              u * glm::dvec3(mesh.normals[corner.y]) +
-                              v * glm::dvec3(mesh.normals[corner.z]);
-    if (!(glm::dot(normal, normal) > 1e-12)) return geometric_normal;
-    return glm::dot(normal, geometric_normal) < 0.0 ? -normal : normal;
-}
-
-struct LocalPointOf {
-    const Scene& scene;
-    const ObjectRay& ray;
-    const Hit& hit;
-
-    LocalPoint operator()(const Sphere& sphere) const {
-        const glm::dvec3 p = at_t() - sphere.centre;
-        const glm::dvec3 n = glm::normalize(p);
-        return {sphere.centre + sphere.radius * n, n, n};
+// The weights of tangent vectors p and q that make up `vector`, which lies in their plane.
+class TangentPlane {
+public:
+    TangentPlane(const glm::vec3& p, const glm::vec3& q)
+        : p_(p), q_(q), pp_(glm::dot(p_, p_)), pq_(glm::dot(p_, q_)), qq_(glm::dot(q_, q_)) {
+        const double determinant = pp_ * qq_ - pq_ * pq_;
+        inverse_ = determinant > 1e-12 * pp_ * qq_ ? 1.0 / determinant : 0.0;
     }
 
-    LocalPoint operator()(const Plane& plane) const {
-        const glm::dvec3 p = at_t();
-        const double height = glm::dot(plane.normal, p) + plane.d;
-        const glm::dvec3 foot = p - plane.normal * (height / glm::dot(plane.normal, plane.normal));
-        return {foot, plane.normal, plane.normal};
+    // 0 if p and q span no plane.
+    [[nodiscard]] glm::vec2 weights(const glm::dvec3& vector) const {
+        const double along_p = glm::dot(vector, p_);
+        const double along_q = glm::dot(vector, q_);
+        return {static_cast<float>((qq_ * along_p - pq_ * along_q) * inverse_),
+                static_cast<float>((pp_ * along_q - pq_ * along_p) * inverse_)};
     }
 
-    LocalPoint operator()(const Box& box) const {
-        const int axis = static_cast<int>(hit.primitive / 2);
-        const bool upper = hit.primitive % 2 != 0;
-        LocalPoint point;
-        point.position = glm::clamp(at_t(), box.min, box.max);
-        point.position[axis] = upper ? box.max[axis] : box.min[axis];
-        point.geometric_normal[axis] = upper ? 1.0 : -1.0;
-        point.shading_normal = point.geometric_normal;
-        return point;
-    }
-
-    LocalPoint operator()(const Triangle& triangle) const {
-        return triangle_point(ray, hit, triangle.a, triangle.b, triangle.c);
-    }
-
-    LocalPoint operator()(const MeshInstance& instance) const {
-        const Mesh& mesh = scene.meshes[instance.mesh];
-        const glm::uvec3 corner = mesh.triangles[hit.primitive];
-        LocalPoint point = triangle_point(ray, hit, glm::dvec3(mesh.positions[corner.x]),
-                                          glm::dvec3(mesh.positions[corner.y]),
-                                          glm::dvec3(mesh.positions[corner.z]));
-        point.shading_normal = mesh_shading_normal(mesh, corner, hit, point.geometric_normal);
-        return point;
-    }
-
-    [[nodiscard]] glm::dvec3 at_t() const {
-        return ray.origin + static_cast<double>(hit.t) * ray.direction;
-    }
+private:
+    glm::dvec3 p_;
+    glm::dvec3 q_;
+    double pp_;
+    double pq_;
+    double qq_;
+    double inverse_ = 0.0;
 };
 
 }  // namespace
 
 SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
     const Object& object = scene.objects[object_index(scene, hit.object)];
-    const Transform object_from_world = inverse(object.world_from_object).value_or(Transform{});
-    const ObjectRay local{object_from_world.point(glm::dvec3(ray.origin)),
-                          object_from_world.vector(glm::dvec3(ray.direction))};
-    const LocalPoint point = std::visit(LocalPointOf{scene, local, hit}, object.shape);
-    const glm::dvec3 position = object.world_from_object.point(point.position);
+    const Transform& world_from_object = object.world_from_object;
+    const Transform object_from_world = inverse(world_from_object).value_or(Transform{});
+    const ObjectRay local_ray{object_from_world.point(glm::dvec3(ray.origin)),
+                              object_from_world.vector(glm::dvec3(ray.direction))};
+    const LocalPoint local = local_point(scene, object, local_ray, hit);
+    const glm::dvec3 position = world_from_object.point(local.position);
 
     SurfacePoint surface;
     surface.position = glm::vec3(position);
-    // Rounding to float, and the double arithmetic before it with room to spare.
-    const glm::dvec3 reach = glm::abs(position) + glm::abs(object.world_from_object.translation);
-    surface.position_error = glm::vec3(glm::abs(position) * 0x1p-24 + reach * 0x1p-48) +
-                             std::numeric_limits<float>::min();
-    surface.geometric_normal = glm::vec3(world_normal(object_from_world, point.geometric_normal));
-    surface.shading_normal = glm::vec3(world_normal(object_from_world, point.shading_normal));
+    surface.position_error =
+        glm::vec3(rounding_bound(world_from_object, object_from_world, local, position)) +
+        std::numeric_limits<float>::min();
+    surface.geometric_normal = glm::vec3(world_normal(object_from_world, local.geometric_normal));
+    surface.shading_normal = glm::vec3(world_normal(object_from_world, local.shading_normal));
     surface.uv = hit.uv;
+    surface.texture_uv = texture_uv(scene, object, hit);
+    surface.dpdu = glm::vec3(world_from_object.vector(local.dpdu));
+    surface.dpdv = glm::vec3(world_from_object.vector(local.dpdv));
     surface.front_face = hit.front_face;
     surface.material = material_id(scene, object, hit.primitive);
     return surface;
@@ -128,6 +94,34 @@ glm::vec3 offset_origin(const SurfacePoint& point, const glm::vec3& direction) {
         origin[axis] = std::nextafter(origin[axis], outwards);
     }
     return origin;
+}
+
+glm::vec2 texture_uv(const Scene& scene, const Object& object, const Hit& hit) {
+    const auto* instance = std::get_if<MeshInstance>(&object.shape);
+    if (instance == nullptr) return hit.uv;
+    const Mesh& mesh = scene.meshes[instance->mesh];
+    if (mesh.uvs.empty()) return glm::vec2(0.0f);
+    const glm::uvec3 corner = mesh.triangles[hit.primitive];
+    return (1.0f - hit.uv.x - hit.uv.y) * mesh.uvs[corner.x] + hit.uv.x * mesh.uvs[corner.y] +
+           hit.uv.y * mesh.uvs[corner.z];
+}
+
+Footprint footprint(const SurfacePoint& point, const glm::vec3& direction, float width) {
+    constexpr double kLeastCosine = 1.0 / 64;
+    const glm::dvec3 n(point.geometric_normal);
+    const glm::dvec3 d(direction);
+    const double cosine = glm::dot(n, d);
+    glm::dvec3 across = glm::cross(n, d);
+    // Seen straight on the ellipse is a circle: any two directions do.
+    if (!(glm::dot(across, across) > 1e-12)) across = glm::cross(n, glm::dvec3(point.dpdu));
+    const double length = glm::length(across);
+    if (!(length > 0.0)) return {};
+    across /= length;
+    const glm::dvec3 shadow = glm::cross(across, n);
+    const double size = static_cast<double>(width);
+    const TangentPlane plane(point.dpdu, point.dpdv);
+    return {plane.weights(size / std::max(std::abs(cosine), kLeastCosine) * shadow),
+            plane.weights(size * across)};
 }
 
 }  // namespace raypick

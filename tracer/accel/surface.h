@@ -13,6 +13,9 @@ struct SurfacePoint {
     glm::vec3 geometric_normal{0.0f};  // unit, outward
     glm::vec3 shading_normal{0.0f};    // unit, interpolated on meshes with normals, outward
     glm::vec2 uv{0.0f};                // the hit's uv
+    glm::vec2 texture_uv{0.0f};        // the mesh's uv there; the hit's on other shapes
+    glm::vec3 dpdu{0.0f};  // scene-space derivatives of the position by texture_uv; 0 on
+    glm::vec3 dpdv{0.0f};  // meshes without uv and where uv is degenerate
     bool front_face = true;
     MaterialId material = kNoMaterial;
 };
@@ -24,5 +27,14 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit);
 // point's own error bound and no more. Source: Pharr, Jakob, Humphreys, Physically Based Rendering,
 // 4th ed. 2023, section 6.8.
 glm::vec3 offset_origin(const SurfacePoint& point, const glm::vec3& direction);
+
+// The uv that textures are looked up by.
+glm::vec2 texture_uv(const Scene& scene, const Object& object, const Hit& hit);
+
+// What a ray's cone of diameter `width` covers around the point, in texture_uv: an ellipse with the
+// axes width along cross(n, d) and width / |cos| along d's shadow on the surface (n the geometric
+// normal, cos = n.d, at least 1/64). 0 where dpdu and dpdv are. The GLSL twin is footprint() in
+// shaders/texture.glsl.
+Footprint footprint(const SurfacePoint& point, const glm::vec3& direction, float width);
 
 }  // namespace raypick

@@ -7,19 +7,34 @@
 #include <glm/vec4.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace raypick {
 
 namespace {
 
-// Height of the image at distance 1 in front of the eye: the notes' h.
+// Height of the image at distance 1 in front of the eye: the notes' h. Of an orthographic view's
+// image, which is the same at any distance.
 double image_height(const Camera& camera) {
+    if (camera.projection == Projection::orthographic) return camera.height;
     return 2.0 * std::tan(glm::radians(camera.fovy) / 2);
 }
 
 bool all_finite(const glm::dvec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// Of the bounds' box, opposite ones first and last; of the unit cube's if they are empty.
+std::array<glm::dvec3, 8> corners_of(const Bounds& bounds) {
+    const glm::dvec3 low = bounds.empty() ? glm::dvec3(-0.5) : glm::dvec3(bounds.min);
+    const glm::dvec3 high = bounds.empty() ? glm::dvec3(0.5) : glm::dvec3(bounds.max);
+    std::array<glm::dvec3, 8> corners{};
+    for (unsigned i = 0; i < corners.size(); ++i) {
+        corners[i] = {(i & 1u) != 0 ? high.x : low.x, (i & 2u) != 0 ? high.y : low.y,
+                      (i & 4u) != 0 ? high.z : low.z};
+    }
+    return corners;
 }
 
 // The coordinate axis that is least parallel to v.
@@ -54,6 +69,9 @@ void check_camera(const Camera& camera) {
     if (!(camera.fovy > 0.0 && camera.fovy < 180.0)) {
         throw Error("camera: fovy must lie between 0 and 180 degrees");
     }
+    if (!(camera.height > 0.0) || !std::isfinite(camera.height)) {
+        throw Error("camera: height must be a positive number");
+    }
     if (!(camera.near > 0.0) || !std::isfinite(camera.near)) {
         throw Error("camera: near must be a positive number");
     }
@@ -65,11 +83,19 @@ RayGenerator::RayGenerator(const Camera& camera, ImageSize size)
       near_(camera.near),
       height_(image_height(camera)),
       width_(height_ * size.aspect()),
-      size_(size) {}
+      size_(size),
+      orthographic_(camera.projection == Projection::orthographic) {}
 
 Ray RayGenerator::ray(ImagePoint point) const {
     const double ax = width_ * (point.c / size_.cols - 0.5);
     const double ay = -height_ * (point.r / size_.rows - 0.5);
+    if (orthographic_) {
+        Ray ray;
+        ray.origin = glm::vec3(eye_ + ax * frame_.vx + ay * frame_.vy);
+        ray.direction = glm::vec3(-frame_.vz);
+        ray.t_min = static_cast<float>(near_);
+        return ray;
+    }
     const glm::dvec3 u = ax * frame_.vx + ay * frame_.vy - frame_.vz;
     const double length = glm::length(u);
     Ray ray;
@@ -77,6 +103,28 @@ Ray RayGenerator::ray(ImagePoint point) const {
     ray.direction = glm::vec3(u / length);
     ray.t_min = static_cast<float>(near_ * length);  // near / cos of the angle to the view axis
     return ray;
+}
+
+Ray RayGenerator::lens_ray(ImagePoint point, const glm::dvec2& lens, double focus_distance) const {
+    const double ax = width_ * (point.c / size_.cols - 0.5);
+    const double ay = -height_ * (point.r / size_.rows - 0.5);
+    const glm::dvec3 across = ax * frame_.vx + ay * frame_.vy;
+    const glm::dvec3 on_lens = lens.x * frame_.vx + lens.y * frame_.vy;
+    const glm::dvec3 centre = orthographic_ ? eye_ + across : eye_;
+    const glm::dvec3 to_focus =
+        orthographic_ ? -focus_distance * frame_.vz : focus_distance * (across - frame_.vz);
+    const glm::dvec3 u = to_focus - on_lens;
+    const double length = glm::length(u);
+    Ray ray;
+    ray.origin = glm::vec3(centre + on_lens);
+    ray.direction = glm::vec3(u / length);
+    ray.t_min = static_cast<float>(near_ * length / focus_distance);
+    return ray;
+}
+
+RayCone RayGenerator::cone() const {
+    const auto pixel = static_cast<float>(height_ / size_.rows);
+    return orthographic_ ? RayCone{pixel, 0.0f} : RayCone{0.0f, pixel};
 }
 
 Ray camera_ray(const Camera& camera, ImageSize size, ImagePoint point) {
@@ -90,7 +138,11 @@ Ray camera_ray(const Camera& camera, ImageSize size, Pixel pixel) {
 std::optional<ImagePoint> project(const Camera& camera, ImageSize size, const glm::dvec3& point) {
     const CameraFrame frame = camera_frame(camera);
     const glm::dvec3 offset = point - camera.eye;
-    const double depth = -glm::dot(frame.vz, offset);
+    double depth = -glm::dot(frame.vz, offset);
+    if (camera.projection == Projection::orthographic) {
+        if (!(depth > camera.near)) return std::nullopt;
+        depth = 1.0;
+    }
     if (!(depth > 0.0)) return std::nullopt;
     const double h = image_height(camera);
     const double w = h * size.aspect();
@@ -130,32 +182,74 @@ double near_for_bounds(const Camera& camera, const Bounds& bounds) {
 
 Camera frame_bounds(const Bounds& bounds, const glm::dvec3& direction, const glm::dvec3& up,
                     double fovy, double aspect) {
+    Camera like;
+    like.eye = glm::dvec3(0.0);
+    like.at = direction;
+    like.up = up;
+    like.fovy = fovy;
+    return frame_bounds(bounds, like, aspect);
+}
+
+Camera frame_bounds(const Bounds& bounds, const Camera& like, double aspect) {
     constexpr double kMargin = 1.05;
-    const bool empty = bounds.empty();
-    const glm::dvec3 low = empty ? glm::dvec3(-0.5) : glm::dvec3(bounds.min);
-    const glm::dvec3 high = empty ? glm::dvec3(0.5) : glm::dvec3(bounds.max);
-    Camera camera;
-    camera.at = 0.5 * (low + high);
-    camera.up = up;
-    camera.fovy = fovy;
-    const glm::dvec3 view = glm::normalize(direction);
+    const std::array<glm::dvec3, 8> corners = corners_of(bounds);
+    Camera camera = like;
+    camera.at = 0.5 * (corners.front() + corners.back());
+    const glm::dvec3 view = glm::normalize(like.at - like.eye);
     camera.eye = camera.at - view;
     const CameraFrame frame = camera_frame(camera);
-    const double tan_y = image_height(camera) / 2 / kMargin;
+    const double tan_y = std::tan(glm::radians(camera.fovy) / 2) / kMargin;
     const double tan_x = tan_y * aspect;
     double distance = 0.0;
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 p((corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
-                           (corner & 4) != 0 ? high.z : low.z);
-        const glm::dvec3 offset = p - camera.at;
-        const double across = std::max(std::abs(glm::dot(frame.vx, offset)) / tan_x,
-                                       std::abs(glm::dot(frame.vy, offset)) / tan_y);
-        distance = std::max(distance, across - glm::dot(view, offset));
+    double half_height = 0.0;
+    for (const glm::dvec3& corner : corners) {
+        const glm::dvec3 offset = corner - camera.at;
+        const double x = std::abs(glm::dot(frame.vx, offset));
+        const double y = std::abs(glm::dot(frame.vy, offset));
+        distance = std::max(distance, std::max(x / tan_x, y / tan_y) - glm::dot(view, offset));
+        half_height = std::max(half_height, std::max(x / aspect, y));
     }
     if (!(distance > 0.0)) distance = 1.0;  // a single point
+    if (!(half_height > 0.0)) half_height = 1.0;
     camera.eye = camera.at - distance * view;
+    if (camera.projection == Projection::orthographic) {
+        camera.height = 2.0 * kMargin * half_height;
+        put_eye_before(camera, bounds);
+    }
     camera.near = near_for_bounds(camera, bounds);
     return camera;
+}
+
+Camera orthographic_view(const Camera& camera, const Bounds& bounds) {
+    Camera parallel = camera;
+    parallel.projection = Projection::orthographic;
+    if (camera.projection == Projection::perspective) {
+        parallel.height = glm::distance(camera.eye, camera.at) * image_height(camera);
+    }
+    put_eye_before(parallel, bounds);
+    parallel.near = near_for_bounds(parallel, bounds);
+    return parallel;
+}
+
+Camera perspective_view(const Camera& camera) {
+    Camera central = camera;
+    central.projection = Projection::perspective;
+    if (camera.projection == Projection::orthographic) {
+        const double distance = camera.height / image_height(central);
+        central.eye = camera.at + distance * camera_frame(camera).vz;
+    }
+    return central;
+}
+
+void put_eye_before(Camera& camera, const Bounds& bounds) {
+    if (bounds.empty()) return;
+    const glm::dvec3 vz = camera_frame(camera).vz;
+    const glm::dvec3 centre(bounds.centre());
+    const double radius = 0.5 * glm::length(glm::dvec3(bounds.extent()));
+    // Bounds of a single point have no radius; the eye never stands in the plane through `at`.
+    const double room = std::max(0.05 * radius, 1e-3 * camera.height);
+    const double nearest = std::max(glm::dot(centre - camera.at, vz) + radius, 0.0);
+    camera.eye = camera.at + (nearest + room) * vz;
 }
 
 }  // namespace raypick

@@ -9,11 +9,14 @@
 #include "tracer/geometry/ray.h"
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <optional>
 
 namespace raypick {
+
+enum class Projection { perspective, orthographic };
 
 // In scene space (file coordinates minus the scene's origin).
 struct Camera {
@@ -22,6 +25,9 @@ struct Camera {
     glm::dvec3 up{0.0, 1.0, 0.0};
     double fovy = 45.0;  // full vertical angle, degrees, in (0, 180)
     double near = 1e-3;  // distance of the near plane along the view axis, > 0; far is infinite
+    Projection projection = Projection::perspective;
+    double height =
+        2.0;  // of what an orthographic view shows, scene units; fovy means nothing there
 
     friend bool operator==(const Camera&, const Camera&) = default;
 };
@@ -36,12 +42,13 @@ struct CameraFrame {
 // If `up` is parallel to the view, another up axis is chosen (the frame is always orthonormal).
 CameraFrame camera_frame(const Camera& camera);
 
-// Throws Error if eye equals at, fovy is outside (0, 180), near is not positive, or a number is not
-// finite. Callers that take a camera from a person call this first.
+// Throws Error if eye equals at, fovy is outside (0, 180), height or near is not positive, or a
+// number is not finite. Callers that take a camera from a person call this first.
 void check_camera(const Camera& camera);
 
 // The ray through an image point, real r and c: pixel corners are integers, centres + 0.5. Unit
-// direction; t_min is the near plane's distance along this ray.
+// direction; t_min is the near plane's distance along this ray. Orthographic rays are parallel to
+// the view axis and begin in the plane through the eye.
 Ray camera_ray(const Camera& camera, ImageSize size, ImagePoint point);
 // Through a pixel's centre. The one ray generator for clicks and frames.
 Ray camera_ray(const Camera& camera, ImageSize size, Pixel pixel);
@@ -52,17 +59,26 @@ public:
     RayGenerator(const Camera& camera, ImageSize size);
 
     [[nodiscard]] Ray ray(ImagePoint point) const;
+    // The ray through the same point of the plane at `focus_distance` (> 0) in front of the eye
+    // that comes from another point of a thin lens: `lens`, along vx and vy from the lens's centre,
+    // scene units. Everything in that plane is sharp.
+    [[nodiscard]] Ray lens_ray(ImagePoint point, const glm::dvec2& lens,
+                               double focus_distance) const;
+    // What each ray's pixel covers: the height of a pixel.
+    [[nodiscard]] RayCone cone() const;
 
 private:
     CameraFrame frame_;
     glm::dvec3 eye_;
     double near_;
-    double height_;  // of the image at distance 1
+    double height_;  // of the image at distance 1; of an orthographic view's everywhere
     double width_;
     ImageSize size_;
+    bool orthographic_;
 };
 
-// The image point that a scene-space point projects to; nothing if it is not in front of the eye.
+// The image point that a scene-space point projects to; nothing if it is not in front of the eye
+// (perspective) or the near plane (orthographic).
 std::optional<ImagePoint> project(const Camera& camera, ImageSize size, const glm::dvec3& point);
 
 // OpenGL's matrices: eye space looks along -z, clip space z in [-w, w], far at infinity.
@@ -77,5 +93,18 @@ double near_for_bounds(const Camera& camera, const Bounds& bounds);
 // an image of this aspect ratio. Empty bounds give the unit cube's view.
 Camera frame_bounds(const Bounds& bounds, const glm::dvec3& direction, const glm::dvec3& up,
                     double fovy, double aspect);
+// The same with this camera's direction, up, fovy and projection. In an orthographic view all of
+// the bounds lie in front of the eye.
+Camera frame_bounds(const Bounds& bounds, const Camera& like, double aspect);
+
+// The same view by parallel rays: what lies in the plane through `at` keeps its size. The eye moves
+// along the view axis to where all of the bounds lie in front of it.
+Camera orthographic_view(const Camera& camera, const Bounds& bounds);
+// An orthographic view by rays from one point, which keeps the size of what lies in the plane
+// through `at`. Its fovy is the camera's.
+Camera perspective_view(const Camera& camera);
+// Moves the eye of an orthographic camera along its view axis, which doesn't change the view but
+// for what is behind the eye, to where all of the bounds are in front of it.
+void put_eye_before(Camera& camera, const Bounds& bounds);
 
 }  // namespace raypick

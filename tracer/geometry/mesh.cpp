@@ -1,6 +1,7 @@
 #include "tracer/geometry/shapes.h"
 
 #include "tracer/error.h"
+#include "tracer/geometry/parts.h"
 
 #include <fmt/format.h>
 
@@ -26,22 +27,6 @@ void check_indices(const Mesh& mesh) {
             throw Error(fmt::format("mesh \"{}\": triangle {} uses position {}, but there are {}",
                                     mesh.name, i, largest, count));
         }
-    }
-}
-
-void check_parts(const Mesh& mesh) {
-    std::uint64_t next = 0;
-    for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
-        const Part& part = mesh.parts[i];
-        if (part.first != next) {
-            throw Error(fmt::format("mesh \"{}\": part {} begins at triangle {}, but should at {}",
-                                    mesh.name, i, part.first, next));
-        }
-        next += part.count;
-    }
-    if (!mesh.parts.empty() && next != mesh.triangles.size()) {
-        throw Error(fmt::format("mesh \"{}\": the parts hold {} triangles, the mesh has {}",
-                                mesh.name, next, mesh.triangles.size()));
     }
 }
 
@@ -80,16 +65,7 @@ void check_mesh(const Mesh& mesh) {
     check_length(mesh, "normals", mesh.normals.size());
     check_length(mesh, "uvs", mesh.uvs.size());
     check_indices(mesh);
-    check_parts(mesh);
-}
-
-const Part* part_of(const Mesh& mesh, std::uint32_t triangle) {
-    const auto after =
-        std::upper_bound(mesh.parts.begin(), mesh.parts.end(), triangle,
-                         [](std::uint32_t t, const Part& part) { return t < part.first; });
-    if (after == mesh.parts.begin()) return nullptr;
-    const Part& part = *(after - 1);
-    return triangle - part.first < part.count ? &part : nullptr;
+    check_parts("mesh", mesh.name, "triangle", mesh.parts, mesh.triangles.size());
 }
 
 }  // namespace raypick

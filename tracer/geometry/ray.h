@@ -17,4 +17,14 @@ struct Ray {
     [[nodiscard]] glm::vec3 at(float t) const { return origin + t * direction; }
 };
 
+// What a pixel's ray stands for: a cone of this diameter around it, width + spread * t at t.
+// Source: Akenine-Moeller et al., "Texture Level of Detail Strategies for Real-Time Ray Tracing",
+// Ray Tracing Gems, 2019.
+struct RayCone {
+    float width = 0.0f;   // at the origin
+    float spread = 0.0f;  // growth per unit of t
+
+    [[nodiscard]] float at(float t) const { return width + spread * t; }
+};
+
 }  // namespace raypick

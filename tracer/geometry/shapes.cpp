@@ -64,7 +64,7 @@ ShapeHits intersect(const Sphere& sphere, const ObjectRay& ray) {
     double t0 = q != 0.0 ? c / q : 0.0;
     double t1 = q / a;
     if (t0 > t1) std::swap(t0, t1);
-    return {{sphere_hit(sphere, ray, t0), sphere_hit(sphere, ray, t1)}, 2};
+    return {{{sphere_hit(sphere, ray, t0), sphere_hit(sphere, ray, t1)}}, 2};
 }
 
 // The notes' ray-plane formula with the plane's d, which they drop.
@@ -77,7 +77,7 @@ ShapeHits intersect(const Plane& plane, const ObjectRay& ray) {
     hit.t = t;
     hit.normal = plane.normal;
     hit.uv = plane_uv(plane, ray.origin + hit.t * ray.direction);
-    return {{hit, {}}, 1};
+    return {{{hit}}, 1};
 }
 
 ShapeHits intersect(const Triangle& triangle, const ObjectRay& ray) {
@@ -87,7 +87,7 @@ ShapeHits intersect(const Triangle& triangle, const ObjectRay& ray) {
     hit.t = found->t;
     hit.uv = {found->u, found->v};
     hit.normal = glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
-    return {{hit, {}}, 1};
+    return {{{hit}}, 1};
 }
 
 ShapeHits intersect(const Box& box, const ObjectRay& ray) {
@@ -117,8 +117,8 @@ ShapeHits intersect(const Box& box, const ObjectRay& ray) {
         }
     }
     if (!(enter <= leave) || !std::isfinite(enter) || !std::isfinite(leave)) return {};
-    return {{box_hit(box, ray, enter, enter_axis, ray.direction[enter_axis] < 0.0),
-             box_hit(box, ray, leave, leave_axis, ray.direction[leave_axis] > 0.0)},
+    return {{{box_hit(box, ray, enter, enter_axis, ray.direction[enter_axis] < 0.0),
+              box_hit(box, ray, leave, leave_axis, ray.direction[leave_axis] > 0.0)}},
             2};
 }
 

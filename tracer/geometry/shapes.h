@@ -9,7 +9,9 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -44,7 +46,41 @@ struct Box {
     glm::dvec3 max{0.5};
 };
 
-// A material range of a mesh: the triangles [first, first + count) in file order.
+// Flat and round, with a hole if inner_radius > 0. The outside is where the normal points.
+struct Disk {
+    glm::dvec3 centre{0.0};
+    glm::dvec3 normal{0.0, 1.0, 0.0};  // any length but 0
+    double radius = 1.0;
+    double inner_radius = 0.0;
+};
+
+// The parallelogram corner + a edge_u + b edge_v with a, b in [0, 1]. The outside is where
+// cross(edge_u, edge_v) points.
+struct Rectangle {
+    glm::dvec3 corner{-0.5, 0.0, 0.5};
+    glm::dvec3 edge_u{1.0, 0.0, 0.0};
+    glm::dvec3 edge_v{0.0, 0.0, -1.0};
+};
+
+// A truncated cone of revolution, a cylinder if the radii are equal; open, or with a disk at either
+// end. At most one radius may be 0.
+struct Cone {
+    glm::dvec3 base{0.0};
+    glm::dvec3 apex{0.0, 1.0, 0.0};
+    double base_radius = 1.0;
+    double apex_radius = 1.0;
+    bool capped = true;
+};
+
+// A ring torus: minor_radius <= major_radius.
+struct Torus {
+    glm::dvec3 centre{0.0};
+    glm::dvec3 axis{0.0, 1.0, 0.0};  // any length but 0
+    double major_radius = 1.0;
+    double minor_radius = 0.25;
+};
+
+// A material range of a mesh or a set: the primitives [first, first + count) in file order.
 struct Part {
     std::uint32_t first = 0;
     std::uint32_t count = 0;
@@ -78,11 +114,48 @@ Mesh make_mesh(std::string name, MeshData data, std::vector<Part> parts = {});
 Mesh borrow_mesh(std::string name, std::span<const glm::vec3> positions,
                  std::span<const glm::uvec3> triangles, std::span<const glm::vec3> normals = {});
 
+// Many spheres as one object, each a primitive: xyz is the centre, w the radius, > 0. The array
+// belongs to `storage`, or to the caller if that is null, as for a Mesh.
+struct SphereSet {
+    std::string name;
+    std::span<const glm::vec4> spheres;
+    std::vector<Part> parts;  // ascending, covering all spheres; or empty
+    std::shared_ptr<const std::vector<glm::vec4>> storage;
+};
+
+// Many truncated cones as one object, each a primitive: elements 2i and 2i + 1 are base and apex of
+// cone i, xyz the centre and w the radius there.
+struct ConeSet {
+    std::string name;
+    std::span<const glm::vec4> ends;
+    bool capped = false;
+    std::vector<Part> parts;  // ascending, covering all cones; or empty
+    std::shared_ptr<const std::vector<glm::vec4>> storage;
+
+    [[nodiscard]] std::size_t size() const { return ends.size() / 2; }
+};
+
+// Sets that own their arrays.
+SphereSet make_sphere_set(std::string name, std::vector<glm::vec4> spheres,
+                          std::vector<Part> parts = {});
+ConeSet make_cone_set(std::string name, std::vector<glm::vec4> ends, bool capped,
+                      std::vector<Part> parts = {});
+
+// One element of a set.
+Sphere sphere_of(const SphereSet& set, std::uint32_t primitive);
+Cone cone_of(const ConeSet& set, std::uint32_t primitive);
+
+// Throw Error that names the first sphere or cone that is not finite, has no size, or that parts
+// don't cover, as check_mesh.
+void check_set(const SphereSet& set);
+void check_set(const ConeSet& set);
+
 // Throws Error if an index is out of range, an array has the wrong length, the parts don't cover
 // the triangles or there are more than 2^30 of these; the message names the first offender.
 void check_mesh(const Mesh& mesh);
 
-// The part that holds a triangle; nullptr if the mesh has no parts.
+// The part that holds a primitive; nullptr if there are none.
+const Part* part_of(std::span<const Part> parts, std::uint32_t primitive);
 const Part* part_of(const Mesh& mesh, std::uint32_t triangle);
 
 // A ray in some object's space, in double: the direction is NOT renormalised, so t is the world
@@ -94,17 +167,22 @@ struct ObjectRay {
 
 // Where a ray meets a shape. uv: barycentric (weights of the second and third corner) on triangles;
 // longitude and colatitude over 2 pi and pi on spheres; the two free coordinates on planes; face
-// coordinates in [0, 1] on boxes.
+// coordinates in [0, 1] on boxes; the weights of the edges on rectangles; angle over 2 pi and
+// radius over the outer radius on disks and caps; angle over 2 pi and height from base to apex
+// in [0, 1] on cones; angle about the axis and about the tube over 2 pi on tori.
 struct ShapeHit {
     double t = 0.0;
     glm::dvec2 uv{0.0};
-    glm::dvec3 normal{0.0};       // geometric, outward, object space, not normalised
-    std::uint32_t primitive = 0;  // of a box: face 0..5 = -x +x -y +y -z +z; 0 on the others
+    glm::dvec3 normal{0.0};  // geometric, outward, object space, not normalised
+    // Of a box: face 0..5 = -x +x -y +y -z +z; of a cone: side 0, base cap 1, apex cap 2; 0 on the
+    // others.
+    std::uint32_t primitive = 0;
 };
 
-// At most two hits, nearest first: a ray meets a plane or a triangle once, a sphere or a box twice.
+// At most four hits, nearest first: a ray meets a plane or a triangle once, a sphere, a box or a
+// cone up to twice, a torus up to four times.
 struct ShapeHits {
-    ShapeHit hit[2];
+    std::array<ShapeHit, 4> hit;
     int count = 0;
 };
 
@@ -112,5 +190,9 @@ ShapeHits intersect(const Sphere& sphere, const ObjectRay& ray);
 ShapeHits intersect(const Plane& plane, const ObjectRay& ray);
 ShapeHits intersect(const Triangle& triangle, const ObjectRay& ray);
 ShapeHits intersect(const Box& box, const ObjectRay& ray);
+ShapeHits intersect(const Disk& disk, const ObjectRay& ray);
+ShapeHits intersect(const Rectangle& rectangle, const ObjectRay& ray);
+ShapeHits intersect(const Cone& cone, const ObjectRay& ray);
+ShapeHits intersect(const Torus& torus, const ObjectRay& ray);
 
 }  // namespace raypick

@@ -1,5 +1,7 @@
 #include "tracer/geometry/transform.h"
 
+#include "tracer/geometry/rounding.h"
+
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
@@ -13,16 +15,6 @@ namespace {
 
 bool all_finite(const glm::dvec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-float round_down(double x) {
-    const auto f = static_cast<float>(x);
-    return f > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
-}
-
-float round_up(double x) {
-    const auto f = static_cast<float>(x);
-    return f < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
 }
 
 }  // namespace
@@ -92,14 +84,7 @@ Bounds world_bounds(const Transform& world_from_object, const glm::dvec3& min,
         low = glm::min(low, p);
         high = glm::max(high, p);
     }
-    // The corners themselves were rounded (to double) on the way here.
-    const glm::dvec3 slack = 1e-15 * glm::max(glm::abs(low), glm::abs(high));
-    Bounds bounds;
-    for (int axis = 0; axis < 3; ++axis) {
-        bounds.min[axis] = round_down(low[axis] - slack[axis]);
-        bounds.max[axis] = round_up(high[axis] + slack[axis]);
-    }
-    return bounds;
+    return rounded_outwards(low, high);
 }
 
 }  // namespace raypick

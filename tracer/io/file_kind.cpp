@@ -21,13 +21,14 @@ struct Ending {
     FileKind kind;
 };
 
-constexpr std::array<Ending, 6> kEndings{{
+constexpr std::array<Ending, 7> kEndings{{
     {".json", FileKind::scene},
     {".obj", FileKind::obj},
     {".gltf", FileKind::gltf},
     {".glb", FileKind::gltf},
     {".ply", FileKind::ply},
     {".stl", FileKind::stl},
+    {".nff", FileKind::nff},
 }};
 
 std::string lower_case(std::string text) {
@@ -99,6 +100,21 @@ bool looks_like_obj(std::string_view text) {
     return false;
 }
 
+// Does the first line that is no comment look like NFF? What could as well be OBJ does not.
+bool looks_like_nff(std::string_view text) {
+    while (!text.empty()) {
+        const std::string_view line = text.substr(0, text.find('\n'));
+        const std::string_view rest = without_mark_and_blanks(line);
+        if (!rest.empty() && rest[0] != '#') {
+            const std::string_view word = rest.substr(0, rest.find_first_of(" \t\r"));
+            const bool alone = rest.find_last_not_of(" \t\r") + 1 == word.size();
+            return word == "b" || (word == "v" && alone);
+        }
+        text.remove_prefix(std::min(text.size(), line.size() + 1));
+    }
+    return false;
+}
+
 }  // namespace
 
 FileHead read_head(const std::filesystem::path& file) {
@@ -124,6 +140,7 @@ std::optional<FileKind> file_kind(const std::filesystem::path& file, const FileH
         if (begins_with(text, start)) return json_kind(file, text);
     }
     if (const std::optional<FileKind> named = kind_by_ending(file)) return named;
+    if (looks_like_nff(text)) return FileKind::nff;
     if (looks_like_obj(text)) return FileKind::obj;
     return std::nullopt;
 }

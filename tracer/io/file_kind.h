@@ -8,7 +8,7 @@
 
 namespace raypick {
 
-enum class FileKind { scene, obj, gltf, ply, stl };
+enum class FileKind { scene, obj, gltf, ply, stl, nff };
 
 // A file's first bytes.
 struct FileHead {

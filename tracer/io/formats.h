@@ -15,6 +15,7 @@ LoadedScene load_obj(const std::filesystem::path& file, const LoadOptions& optio
 LoadedScene load_gltf(const std::filesystem::path& file, const LoadOptions& options);  // and GLB
 LoadedScene load_ply(const std::filesystem::path& file, const LoadOptions& options);
 LoadedScene load_stl(const std::filesystem::path& file, const LoadOptions& options);
+LoadedScene load_nff(const std::filesystem::path& file, const LoadOptions& options);
 
 // Any of the formats above, told apart by content, else by the name's ending.
 LoadedScene load_model(const std::filesystem::path& file, const LoadOptions& options);

@@ -2,8 +2,10 @@
 #include "tracer/error.h"
 #include "tracer/io/formats.h"
 #include "tracer/io/gltf_document.h"
+#include "tracer/io/gltf_lights.h"
 #include "tracer/io/gltf_material.h"
 #include "tracer/io/gltf_mesh.h"
+#include "tracer/io/gltf_textures.h"
 #include "tracer/io/load_steps.h"
 
 #include <fmt/format.h>
@@ -65,7 +67,11 @@ Transform node_transform(const JsonValue& node) {
 class GltfReader {
 public:
     GltfReader(const std::filesystem::path& file, const LoadOptions& options)
-        : file_(file), options_(options), document_(file), loaded_(begin_scene(options)) {}
+        : file_(file),
+          options_(options),
+          document_(file),
+          loaded_(begin_scene(options)),
+          textures_(loaded_) {}
 
     LoadedScene read() {
         read_materials();
@@ -78,7 +84,8 @@ public:
             todo_.pop_back();
             read_node(visit);
         }
-        normalise_lights();
+        expose_gltf_lights(loaded_.scene);
+        textures_.finish(options_, kNodesDone, 1.0f);
         warn_of_rest();
         return std::move(loaded_);
     }
@@ -95,12 +102,16 @@ private:
     // Every node's path names all its ancestors; no model's tree is anywhere near as deep.
     static constexpr int kMaxDepth = 1000;
 
+    static constexpr float kNodesDone = 0.7f;  // of the progress; the rest are textures
+
     void read_materials() {
         const std::vector<JsonValue>& materials = document_.array("materials");
         for (std::size_t i = 0; i < materials.size(); ++i) {
-            GltfMaterial material = read_gltf_material(materials[i]);
+            GltfMaterial material = read_gltf_material(document_, materials[i], loaded_.warnings);
             if (material.name.empty()) material.name = fmt::format("material{}", i);
-            add_material(loaded_.scene, material_from(material));
+            uv_sets_.push_back(material.uv_set());
+            const MaterialId id = add_material(loaded_.scene, material_from(material));
+            textures_.request(id, std::move(material));
         }
     }
 
@@ -153,8 +164,8 @@ private:
     }
 
     void read_node(const Visit& visit) {
-        load_step(options_,
-                  static_cast<float>(++nodes_read_) / static_cast<float>(visited_.size() + 1));
+        load_step(options_, kNodesDone * static_cast<float>(++nodes_read_) /
+                                static_cast<float>(visited_.size() + 1));
         const JsonValue& node = document_.array("nodes")[visit.node];
         if (visited_[visit.node]) node.fail("is reached twice: the nodes must form trees");
         visited_[visit.node] = true;
@@ -167,7 +178,7 @@ private:
         if (node.find("mesh")) add_object_of(node, world, name, path);
         if (const auto camera = node.find("camera")) add_camera(*camera, node, world);
         if (const auto light = extension(node, "KHR_lights_punctual")) {
-            add_light(light->need("light"), node, world);
+            add_light(light->need("light"), node, world, path);
         }
         has_skins_ |= node.find("skin").has_value();
         std::vector<std::size_t> children;
@@ -221,7 +232,7 @@ private:
     std::optional<MeshId> mesh_id(std::size_t index) {
         std::optional<std::optional<MeshId>>& known = mesh_ids_[index];
         if (known) return *known;
-        GltfMesh mesh = read_gltf_mesh(document_, index, mesh_name(index));
+        GltfMesh mesh = read_gltf_mesh(document_, index, mesh_name(index), uv_sets_);
         has_lines_ |= mesh.has_lines;
         has_morphs_ |= mesh.has_morphs;
         known.emplace();
@@ -235,13 +246,7 @@ private:
         NamedCamera named;
         named.name = name_of(node).empty() ? name_of(json) : name_of(node);
         if (named.name.empty()) named.name = fmt::format("camera{}", index);
-        const std::optional<JsonValue> perspective = json.find("perspective");
-        if (!perspective) {
-            warn(fmt::format("/cameras/{} \"{}\" is orthographic: left out", index, named.name));
-            return;
-        }
-        constexpr NumberRule kAngle{0.0, 3.1415926, false, "an angle between 0 and pi"};
-        const double yfov = perspective->need("yfov").number(kAngle);
+        read_projection(json, named.camera);
         const glm::dvec3 forward = glm::normalize(world.vector({0.0, 0.0, -1.0}));
         const glm::dvec3 up = glm::normalize(world.vector({0.0, 1.0, 0.0}));
         if (std::isnan(forward.x) || std::isnan(up.x)) {
@@ -252,47 +257,27 @@ private:
         named.camera.eye = world.translation;
         named.camera.at = world.translation + forward;
         named.camera.up = up;
-        named.camera.fovy = glm::degrees(yfov);
         loaded_.scene.cameras.push_back(std::move(named));
     }
 
-    // Lights shine along -z of their node and don't fade with distance here.
-    void add_light(const JsonValue& reference, const JsonValue& node, const Transform& world) {
-        const std::uint64_t index = whole_number(reference);
-        const JsonValue file_lights =
-            document_.root().need("extensions").need("KHR_lights_punctual").need("lights");
-        const std::vector<JsonValue> lights = file_lights.elements();
-        if (index >= lights.size()) reference.fail(fmt::format("light {} does not exist", index));
-        const JsonValue& json = lights[static_cast<std::size_t>(index)];
-        std::string name = name_of(node).empty() ? name_of(json) : name_of(node);
-        if (name.empty()) name = fmt::format("light{}", index);
-        const std::string type = json.need("type").text();
-        const glm::vec3 colour(vector_or(json, "color", glm::dvec3(1.0)) *
-                               real_number(json, "intensity", 1.0));
-        if (type == "directional") {
-            const glm::dvec3 direction = world.vector({0.0, 0.0, -1.0});
-            loaded_.scene.lights.emplace_back(DirectionalLight{name, direction, colour});
-        } else if (type == "point" || type == "spot") {
-            loaded_.scene.lights.emplace_back(PointLight{name, world.translation, colour});
-            if (type == "spot") warn(fmt::format("spot light \"{}\" shines all around", name));
-        } else {
-            json.need("type").refuse(R"("directional", "point" or "spot")");
+    static void read_projection(const JsonValue& json, Camera& camera) {
+        if (const std::optional<JsonValue> orthographic = json.find("orthographic")) {
+            constexpr NumberRule kSize{0.0, 1e18, false, "a positive number"};
+            camera.projection = Projection::orthographic;
+            camera.height = 2.0 * orthographic->need("ymag").number(kSize);
+            return;
         }
+        constexpr NumberRule kAngle{0.0, 3.1415926, false, "an angle between 0 and pi"};
+        camera.fovy = glm::degrees(json.need("perspective").need("yfov").number(kAngle));
     }
 
-    // Candela and lux mean little without fall-off: the brightest light becomes 1.
-    void normalise_lights() {
-        const auto colour_of = [](Light& light) -> glm::vec3& {
-            return std::visit([](auto& kind) -> glm::vec3& { return kind.colour; }, light);
-        };
-        float brightest = 0.0f;
-        for (Light& light : loaded_.scene.lights) {
-            const glm::vec3& c = colour_of(light);
-            brightest = std::max({brightest, c.x, c.y, c.z});
+    void add_light(const JsonValue& reference, const JsonValue& node, const Transform& world,
+                   const std::string& path) {
+        if (auto light = read_gltf_light(document_, reference, node, world)) {
+            loaded_.scene.lights.push_back(*std::move(light));
+        } else {
+            warn(fmt::format("/nodes of path {}: a light scaled to nothing is left out", path));
         }
-        if (!(brightest > 0.0f) || !std::isfinite(brightest)) return;
-        for (Light& light : loaded_.scene.lights)
-            colour_of(light) /= brightest;
     }
 
     void warn(const std::string& text) { loaded_.warnings.push_back(warning(file_, text)); }
@@ -303,9 +288,6 @@ private:
             warn("animations, skins and morph targets are not read: shown in the rest pose");
         }
         if (has_lines_) warn("points and lines are not shown");
-        if (const auto textures = document_.root().find("textures")) {
-            warn(fmt::format("{} textures are not shown", textures->elements().size()));
-        }
         for (const std::string& name : document_.unread_extensions())
             warn("the extension " + name + " is not read");
         if (loaded_.scene.objects.empty()) warn("has no triangles: nothing to show");
@@ -315,6 +297,8 @@ private:
     const LoadOptions& options_;
     GltfDocument document_;
     LoadedScene loaded_;
+    GltfTextures textures_;
+    std::vector<int> uv_sets_;  // of each material
     std::optional<std::vector<std::size_t>> roots_;
     std::vector<Visit> todo_;
     std::vector<bool> visited_;

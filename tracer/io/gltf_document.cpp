@@ -17,16 +17,16 @@ namespace raypick {
 
 namespace {
 
-constexpr std::array<std::string_view, 8> kReadExtensions = {
-    "KHR_lights_punctual",   "KHR_materials_emissive_strength",
-    "KHR_materials_ior",     "KHR_materials_transmission",
-    "KHR_materials_unlit",   "KHR_materials_volume",
-    "KHR_mesh_quantization",
-    "KHR_texture_transform",  // of textures, which are not shown yet
-};
+constexpr std::array<std::string_view, 9> kReadExtensions = {
+    "KHR_lights_punctual",  "KHR_materials_emissive_strength",
+    "KHR_materials_ior",    "KHR_materials_specular",
+    "KHR_materials_unlit",  "KHR_materials_transmission",
+    "KHR_materials_volume", "KHR_mesh_quantization",
+    "KHR_texture_transform"};
 
-constexpr std::array<std::string_view, 7> kArrays = {
-    "accessors", "bufferViews", "buffers", "cameras", "materials", "meshes", "nodes"};
+constexpr std::array<std::string_view, 10> kArrays = {
+    "accessors", "bufferViews", "buffers", "cameras",  "images",
+    "materials", "meshes",      "nodes",   "samplers", "textures"};
 
 constexpr std::size_t kHeaderSize = 12;  // of a GLB: magic, version, length
 constexpr std::uint32_t kJsonChunk = 0x4e4f534au;
@@ -69,6 +69,10 @@ std::string percent_decoded(std::string_view uri) {
     return text;
 }
 
+bool is_data_uri(std::string_view uri) {
+    return uri.substr(0, 5) == "data:";
+}
+
 }  // namespace
 
 GltfDocument::GltfDocument(const std::filesystem::path& file)
@@ -83,9 +87,6 @@ GltfDocument::GltfDocument(const std::filesystem::path& file)
         if (const std::optional<JsonValue> found = root().find(name)) elements = found->elements();
     }
     buffers_.resize(array("buffers").size());
-    // Never moved again: views point into them.
-    decoded_.reserve(buffers_.size());
-    beside_.reserve(buffers_.size());
 }
 
 void GltfDocument::read_container(std::string_view bytes) {
@@ -199,25 +200,69 @@ std::string_view GltfDocument::load_buffer(std::size_t index) {
         return *binary_chunk_;
     }
     const std::string text = uri->text();
-    if (text.compare(0, 5, "data:") == 0) {
-        const std::size_t comma = text.find(',');
-        const bool base64 = comma != std::string_view::npos && comma >= 12 &&
-                            text.compare(comma - 7, 7, ";base64") == 0;
-        if (!base64) uri->fail("a data URI must be base64");
-        std::optional<std::string> bytes = decode_base64(std::string_view(text).substr(comma + 1));
-        if (!bytes) uri->fail("the data are not base64");
-        decoded_.push_back(*std::move(bytes));
-        return decoded_.back();
-    }
-    const std::filesystem::path relative(percent_decoded(text));
-    if (text.find("://") != std::string_view::npos || relative.is_absolute())
-        uri->fail("must be a path relative to this file");
+    if (is_data_uri(text)) return decoded_data(*uri, text);
+    const std::filesystem::path path = path_beside(*uri, text);
     try {
-        beside_.push_back(read_file(path_.parent_path() / relative));
+        beside_.push_back(read_file(path));
     } catch (const FileError& error) {
         uri->fail(error.what());
     }
     return beside_.back().view();
+}
+
+std::string_view GltfDocument::decoded_data(const JsonValue& uri, std::string_view text) {
+    const std::size_t comma = text.find(',');
+    const bool base64 = comma != std::string_view::npos && comma >= 12 &&
+                        text.compare(comma - 7, 7, ";base64") == 0;
+    if (!base64) uri.fail("a data URI must be base64");
+    std::optional<std::string> bytes = decode_base64(text.substr(comma + 1));
+    if (!bytes) uri.fail("the data are not base64");
+    decoded_.push_back(*std::move(bytes));
+    return decoded_.back();
+}
+
+std::filesystem::path GltfDocument::path_beside(const JsonValue& uri,
+                                                const std::string& text) const {
+    const std::filesystem::path relative(percent_decoded(text));
+    if (text.find("://") != std::string::npos || relative.is_absolute())
+        uri.fail("must be a path relative to this file");
+    return path_.parent_path() / relative;
+}
+
+ImageSource GltfDocument::texture_image(const JsonValue& texture) {
+    ImageSource source;
+    source.place = file_;
+    try {
+        const std::optional<JsonValue> reference = texture.find("source");
+        if (!reference) texture.fail("has no source that is read");
+        const std::size_t number = index(*reference, "images");
+        if (const auto known = images_.find(number); known != images_.end()) return known->second;
+        source.name = fmt::format("/images/{}", number);
+        locate_image(number, source);
+        images_.emplace(number, source);
+    } catch (const FileError& error) {
+        // Without the file's name, which the place is.
+        const std::string complaint = std::string(error.what()).substr(error.file().size() + 2);
+        if (source.name.empty()) source.name = complaint;
+        source.problem = fmt::format("can't be read ({})", complaint);
+    }
+    return source;
+}
+
+void GltfDocument::locate_image(std::size_t index, ImageSource& source) {
+    const JsonValue& json = array("images")[index];
+    if (const std::optional<JsonValue> view = json.find("bufferView")) {
+        source.bytes = buffer_view(this->index(*view, "bufferViews"));
+        return;
+    }
+    const JsonValue uri = json.need("uri");
+    const std::string text = uri.text();
+    if (is_data_uri(text)) {
+        source.bytes = decoded_data(uri, text);
+    } else {
+        source.file = path_beside(uri, text);
+        source.name = source.file.string();
+    }
 }
 
 std::uint64_t whole_number(const JsonValue& value) {

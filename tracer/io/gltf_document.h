@@ -3,10 +3,12 @@
 
 #include "tracer/io/file_bytes.h"
 #include "tracer/io/json_value.h"
+#include "tracer/io/texture_library.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <list>
 #include <map>
 #include <optional>
 #include <string>
@@ -37,12 +39,20 @@ public:
     // Bytes of a buffer view; read from beside the file or decoded when first asked for.
     std::string_view buffer_view(std::size_t index);
 
+    // The image of an element of /textures, wherever it is stored. What is wrong with it becomes
+    // its problem, because a picture without it is better than none.
+    ImageSource texture_image(const JsonValue& texture);
+
 private:
     void read_container(std::string_view bytes);
     void check_version() const;
     void check_extensions() const;
     std::string_view buffer(std::size_t index);
     std::string_view load_buffer(std::size_t index);
+    void locate_image(std::size_t index, ImageSource& source);
+    std::string_view decoded_data(const JsonValue& uri, std::string_view text);
+    [[nodiscard]] std::filesystem::path path_beside(const JsonValue& uri,
+                                                    const std::string& text) const;
 
     std::filesystem::path path_;
     std::string file_;  // named in errors
@@ -53,8 +63,9 @@ private:
     std::map<std::string, std::vector<JsonValue>, std::less<>> arrays_;
     std::vector<JsonValue> none_;
     std::vector<std::optional<std::string_view>> buffers_;
-    std::vector<std::string> decoded_;
-    std::vector<FileBytes> beside_;
+    std::list<std::string> decoded_;  // lists, because views point into them
+    std::list<FileBytes> beside_;
+    std::map<std::size_t, ImageSource> images_;
 };
 
 // Whole numbers 0, 1, 2, ... as counts, offsets and indices are.

@@ -26,17 +26,19 @@ class VertexSource {
 public:
     using Key = std::array<std::size_t, 3>;  // accessors: position, normal, uv
 
-    VertexSource(GltfDocument& document, const JsonValue& attributes, const Key& key)
+    VertexSource(GltfDocument& document, const JsonValue& attributes, const Key& key,
+                 const std::string& uv_name)
         : key_(key), position_(document, key[0], "VEC3"), vertex_(position_.count(), kNone) {
         if (key[1] != kNoAccessor) normal_.emplace(document, key[1], "VEC3");
         if (key[2] != kNoAccessor) uv_.emplace(document, key[2], "VEC2");
         check_count(attributes, "NORMAL", normal_);
-        check_count(attributes, "TEXCOORD_0", uv_);
+        check_count(attributes, uv_name, uv_);
     }
 
     static constexpr std::size_t kNoAccessor = static_cast<std::size_t>(-1);
 
-    static Key key_of(const GltfDocument& document, const JsonValue& attributes) {
+    static Key key_of(const GltfDocument& document, const JsonValue& attributes,
+                      const std::string& uv_name) {
         Key key;
         key[0] = document.index(attributes.need("POSITION"), "accessors");
         const auto optional = [&](std::string_view name) {
@@ -44,7 +46,7 @@ public:
             return accessor ? document.index(*accessor, "accessors") : kNoAccessor;
         };
         key[1] = optional("NORMAL");
-        key[2] = optional("TEXCOORD_0");
+        key[2] = optional(uv_name);
         return key;
     }
 
@@ -82,7 +84,8 @@ private:
 
 class MeshReader {
 public:
-    explicit MeshReader(GltfDocument& document) : document_(document) {}
+    MeshReader(GltfDocument& document, const std::vector<int>& uv_sets)
+        : document_(document), uv_sets_(uv_sets) {}
 
     GltfMesh read(const JsonValue& json, std::string name) {
         for (const JsonValue& primitive : json.need("primitives").elements())
@@ -106,27 +109,28 @@ private:
             result_.has_lines = true;
             return;
         }
-        VertexSource& source = source_of(json.need("attributes"));
+        const std::optional<JsonValue> reference = json.find("material");
+        const MaterialId material =
+            reference ? static_cast<MaterialId>(document_.index(*reference, "materials"))
+                      : kNoMaterial;
+        VertexSource& source = source_of(json.need("attributes"), material);
         const auto first = static_cast<std::uint32_t>(data_.triangles.size());
         read_corners(json, source);
         add_triangles(static_cast<Mode>(mode));
         const auto count = static_cast<std::uint32_t>(data_.triangles.size()) - first;
-        const std::optional<JsonValue> material = json.find("material");
-        if (count == 0) return;
-        parts_.push_back({first, count,
-                          material
-                              ? static_cast<MaterialId>(document_.index(*material, "materials"))
-                              : kNoMaterial});
+        if (count > 0) parts_.push_back({first, count, material});
     }
 
-    VertexSource& source_of(const JsonValue& attributes) {
-        const VertexSource::Key key = VertexSource::key_of(document_, attributes);
+    VertexSource& source_of(const JsonValue& attributes, MaterialId material) {
+        const int uv_set = material < uv_sets_.size() ? uv_sets_[material] : 0;
+        const std::string uv_name = fmt::format("TEXCOORD_{}", uv_set);
+        const VertexSource::Key key = VertexSource::key_of(document_, attributes, uv_name);
         has_normals_ |= key[1] != VertexSource::kNoAccessor;
         has_uvs_ |= key[2] != VertexSource::kNoAccessor;
         const auto known = std::find_if(sources_.begin(), sources_.end(),
                                         [&](const VertexSource& s) { return s.key() == key; });
         if (known != sources_.end()) return *known;
-        return sources_.emplace_back(document_, attributes, key);
+        return sources_.emplace_back(document_, attributes, key, uv_name);
     }
 
     // Vertex numbers of the primitive's corners.
@@ -163,6 +167,7 @@ private:
     }
 
     GltfDocument& document_;
+    const std::vector<int>& uv_sets_;
     std::list<VertexSource> sources_;
     MeshData data_;
     std::vector<Part> parts_;
@@ -174,8 +179,9 @@ private:
 
 }  // namespace
 
-GltfMesh read_gltf_mesh(GltfDocument& document, std::size_t index, std::string name) {
-    return MeshReader(document).read(document.array("meshes")[index], std::move(name));
+GltfMesh read_gltf_mesh(GltfDocument& document, std::size_t index, std::string name,
+                        const std::vector<int>& uv_sets) {
+    return MeshReader(document, uv_sets).read(document.array("meshes")[index], std::move(name));
 }
 
 }  // namespace raypick

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace raypick {
 
@@ -15,7 +16,9 @@ struct GltfMesh {
     bool has_morphs = false;  // morph targets were passed over
 };
 
-// Throws FileError with the JSON path.
-GltfMesh read_gltf_mesh(GltfDocument& document, std::size_t index, std::string name);
+// `uv_sets` says for each of /materials which TEXCOORD_n its parts take. Throws FileError with the
+// JSON path.
+GltfMesh read_gltf_mesh(GltfDocument& document, std::size_t index, std::string name,
+                        const std::vector<int>& uv_sets);
 
 }  // namespace raypick

@@ -1,10 +1,12 @@
 #include "tracer/io/json_value.h"
 
 #include "tracer/error.h"
+#include "tracer/io/json_place.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <unordered_set>
 
@@ -115,7 +117,9 @@ public:
         Level& level = levels_.back();
         level.key = key;
         if (level.keys.insert(key).second) return true;
-        complaint_ = fmt::format("{}: the key \"{}\" stands there twice", shown_path(path()),
+        const std::string place = path();
+        complaint_ = fmt::format("line {}: {}: the key \"{}\" stands there twice",
+                                 json_line(text_, place + '/' + escaped(key)), shown_path(place),
                                  shortened(key, kMaxShown));
         return false;
     }
@@ -142,8 +146,9 @@ private:
 
     bool open(bool is_array) {
         if (levels_.size() == kMaxDepth) {
-            complaint_ = fmt::format("{}: nested deeper than {} levels",
-                                     shortened(path(), kMaxShown), kMaxDepth);
+            complaint_ =
+                fmt::format("line {}: {}: nested deeper than {} levels", json_line(text_, path()),
+                            shortened(path(), kMaxShown), kMaxDepth);
             return false;
         }
         levels_.push_back({is_array, 0, {}, {}});
@@ -177,6 +182,19 @@ std::string shown(const Json& json) {
     if (json.is_object()) return "an object";
     if (json.is_array()) return fmt::format("an array of {}", json.size());
     return shortened(json.dump(), kMaxShown);
+}
+
+// The "name" of the innermost value that has one and lies on a JSON pointer's way; "" if none does.
+std::string name_on_the_way(const Json& root, const std::string& pointer) {
+    for (std::string way = pointer; !way.empty(); way.erase(way.rfind('/'))) {
+        const Json& value = root.at(Json::json_pointer(way));
+        if (!value.is_object()) continue;
+        const auto name = value.find("name");
+        if (name != value.end() && name->is_string()) {
+            return shortened(name->get<std::string>(), kMaxShown);
+        }
+    }
+    return "";
 }
 
 // Levenshtein distance.
@@ -235,11 +253,25 @@ std::string quoted_list(std::span<const std::string_view> words, std::string_vie
     return list;
 }
 
+JsonValue::JsonValue(const JsonFile& file) : JsonValue(&file, &file.name, &file.root, "") {}
+
 JsonValue::JsonValue(const std::string& file, const Json& json, std::string path)
-    : file_(&file), json_(&json), path_(std::move(path)) {}
+    : JsonValue(nullptr, &file, &json, std::move(path)) {}
+
+JsonValue::JsonValue(const JsonFile* whole, const std::string* file, const Json* json,
+                     std::string path)
+    : whole_(whole), file_(file), json_(json), path_(std::move(path)) {}
+
+std::string JsonValue::place() const {
+    const std::string path = shown_path(path_);
+    if (whole_ == nullptr || whole_->text.empty()) return path;
+    const std::string name = name_on_the_way(whole_->root, path_);
+    return fmt::format("line {}: {}{}", json_line(whole_->text, path_), path,
+                       name.empty() ? "" : fmt::format(" (of \"{}\")", name));
+}
 
 void JsonValue::fail(std::string_view complaint) const {
-    throw FileError(*file_, fmt::format("{}: {}", shown_path(path_), complaint));
+    throw FileError(*file_, fmt::format("{}: {}", place(), complaint));
 }
 
 void JsonValue::refuse(std::string_view expected) const {
@@ -260,7 +292,7 @@ void JsonValue::only_keys(std::string_view what, std::span<const std::string_vie
 std::optional<JsonValue> JsonValue::find(std::string_view key) const {
     const auto found = json_->find(key);
     if (found == json_->end()) return std::nullopt;
-    return JsonValue(*file_, *found, path_ + '/' + escaped(key));
+    return JsonValue(whole_, file_, &*found, path_ + '/' + escaped(key));
 }
 
 JsonValue JsonValue::need(std::string_view key) const {
@@ -283,7 +315,8 @@ std::vector<JsonValue> JsonValue::elements() const {
     std::vector<JsonValue> elements;
     elements.reserve(json_->size());
     for (const Json& element : *json_) {
-        elements.emplace_back(*file_, element, fmt::format("{}/{}", path_, elements.size()));
+        elements.push_back(
+            JsonValue(whole_, file_, &element, fmt::format("{}/{}", path_, elements.size())));
     }
     return elements;
 }
@@ -293,11 +326,20 @@ std::vector<JsonValue> JsonValue::elements(std::size_t count, std::string_view e
     return elements();
 }
 
-std::string JsonValue::text() const {
-    if (!is_string()) refuse("a text");
-    const auto& text = json_->get_ref<const std::string&>();
+const std::string& JsonValue::text() const {
+    const std::string& text = text_or_empty();
     if (text.empty()) fail("must not be empty");
     return text;
+}
+
+const std::string& JsonValue::text_or_empty() const {
+    if (!is_string()) refuse("a text");
+    return json_->get_ref<const std::string&>();
+}
+
+bool JsonValue::truth() const {
+    if (!json_->is_boolean()) refuse("true or false");
+    return json_->get<bool>();
 }
 
 std::string JsonValue::one_of(std::span<const std::string_view> words) const {
@@ -315,6 +357,12 @@ double JsonValue::number(const NumberRule& rule) const {
                                           : value > rule.min && value < rule.max;
     if (!inside) refuse(rule.words);
     return value;
+}
+
+std::int64_t JsonValue::whole_number(const NumberRule& rule) const {
+    const double value = number(rule);
+    if (value != std::floor(value)) refuse(rule.words);
+    return static_cast<std::int64_t>(value);
 }
 
 }  // namespace raypick

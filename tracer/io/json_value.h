@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,8 +16,8 @@ namespace raypick {
 
 using Json = nlohmann::json;
 
-// JSON with comments. Throws FileError with line and column on a syntax error, with the JSON path
-// if an object has the same key twice or the nesting is absurd.
+// JSON with comments. Throws FileError with line and column on a syntax error, with line and JSON
+// path if an object has the same key twice or the nesting is absurd.
 Json parse_json(const std::string& file, std::string_view text);
 
 // Which numbers are welcome, and how to say so.
@@ -27,13 +28,24 @@ struct NumberRule {
     std::string_view words;    // "must be ...": a positive number
 };
 
-// A reference to a value of a file's JSON; the Json and the file's name must outlive it. All
-// readers throw FileError: "FILE: /objects/3/radius: must be a positive number, not "big"".
+// A file's JSON as a whole.
+struct JsonFile {
+    std::string name;
+    Json root;
+    std::string_view text;  // for lines in messages; "" if a person can't look there
+};
+
+// A reference to a value of a file's JSON; the file must outlive it. All readers throw FileError:
+// "FILE: line 7: /objects/3/radius (of "ball"): must be a positive number, not "big"".
 class JsonValue {
 public:
+    explicit JsonValue(const JsonFile& file);
+    // Of a file whose messages have neither lines nor names; both must outlive this.
     JsonValue(const std::string& file, const Json& json, std::string path = "");
 
     [[noreturn]] void fail(std::string_view complaint) const;
+    // "line 7: /objects/3/radius (of "ball")"
+    [[nodiscard]] std::string place() const;
     // Complains that the value is not what `expected` says ("a number").
     [[noreturn]] void refuse(std::string_view expected) const;
 
@@ -56,12 +68,19 @@ public:
                                                   std::string_view expected) const;
 
     // Not empty.
-    [[nodiscard]] std::string text() const;
+    [[nodiscard]] const std::string& text() const;
+    [[nodiscard]] const std::string& text_or_empty() const;
+    [[nodiscard]] bool truth() const;  // true or false
     // One of a few words.
     [[nodiscard]] std::string one_of(std::span<const std::string_view> words) const;
     [[nodiscard]] double number(const NumberRule& rule) const;
+    // With the rule's words for what is no whole number, too.
+    [[nodiscard]] std::int64_t whole_number(const NumberRule& rule) const;
 
 private:
+    JsonValue(const JsonFile* whole, const std::string* file, const Json* json, std::string path);
+
+    const JsonFile* whole_ = nullptr;  // for lines and names in messages
     const std::string* file_;
     const Json* json_;
     std::string path_;

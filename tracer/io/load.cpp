@@ -33,6 +33,8 @@ LoadedScene load_kind(const std::filesystem::path& file, FileKind kind,
             return load_gltf(file, options);
         case FileKind::ply:
             return load_ply(file, options);
+        case FileKind::nff:
+            return load_nff(file, options);
         case FileKind::stl:
             break;
     }
@@ -69,7 +71,7 @@ LoadedScene load_scene(const std::filesystem::path& file, const LoadOptions& opt
     return naming_file(file, [&] {
         LoadedScene loaded = load_kind(file, kind_or_fail(file), options);
         check_scene(loaded.scene);
-        choose_origin(loaded.scene);
+        if (!loaded.keeps_origin) choose_origin(loaded.scene);
         if (options.progress != nullptr) options.progress->store(1.0f);
         return loaded;
     });

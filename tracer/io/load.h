@@ -1,4 +1,4 @@
-// Opens any file that we read: our scenes, OBJ, glTF, GLB, PLY, STL.
+// Opens any file that we read: our scenes, OBJ, glTF, GLB, PLY, STL, NFF.
 #pragma once
 
 #include "tracer/scene/scene.h"
@@ -21,6 +21,7 @@ struct LoadOptions {
 struct LoadedScene {
     Scene scene;
     std::vector<std::string> warnings;  // each one line, naming the file and the place
+    bool keeps_origin = false;          // scene.origin is the file's: don't choose another
 };
 
 // Reads by content where the format says what it is, else by the name's ending. Throws FileError

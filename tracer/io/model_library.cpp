@@ -13,29 +13,65 @@ MaterialId moved(MaterialId id, MaterialId offset) {
     return id == kNoMaterial ? kNoMaterial : id + offset;
 }
 
-// Moves meshes, materials and warnings of `model` to the end of `target`'s; returns its objects
-// with ids that hold there.
+// Where a model's things come to stand behind those that a scene has.
+struct Offsets {
+    MeshId mesh = 0;
+    SetId sphere_set = 0;
+    SetId cone_set = 0;
+    MaterialId material = 0;
+    TextureId texture = 0;
+};
+
+Offsets offsets_in(const Scene& scene) {
+    return {static_cast<MeshId>(scene.meshes.size()), static_cast<SetId>(scene.sphere_sets.size()),
+            static_cast<SetId>(scene.cone_sets.size()),
+            static_cast<MaterialId>(scene.materials.size()),
+            static_cast<TextureId>(scene.textures.size())};
+}
+
+// Meshes and sets go to the end of the target's.
+template <typename Thing>
+void append_with_parts(std::vector<Thing>& target, std::vector<Thing>& things, MaterialId offset) {
+    for (Thing& thing : things) {
+        for (Part& part : thing.parts)
+            part.material = moved(part.material, offset);
+        target.push_back(std::move(thing));
+    }
+}
+
+void append_materials(Scene& target, Scene& model, const Offsets& offsets) {
+    std::move(model.textures.begin(), model.textures.end(), std::back_inserter(target.textures));
+    for (Material& material : model.materials) {
+        for (TextureMap& map : material.maps) {
+            if (map) map.texture += offsets.texture;
+        }
+        target.materials.push_back(std::move(material));
+    }
+}
+
+Shape moved(Shape shape, const Offsets& offsets) {
+    if (auto* mesh = std::get_if<MeshInstance>(&shape)) mesh->mesh += offsets.mesh;
+    if (auto* spheres = std::get_if<SphereSetInstance>(&shape)) spheres->set += offsets.sphere_set;
+    if (auto* cones = std::get_if<ConeSetInstance>(&shape)) cones->set += offsets.cone_set;
+    return shape;
+}
+
+// Moves what `model` consists of to the end of `target`'s; returns its objects with ids that hold
+// there.
 std::vector<ModelPiece> append(LoadedScene& target, LoadedScene model) {
-    const auto mesh_offset = static_cast<MeshId>(target.scene.meshes.size());
-    const auto material_offset = static_cast<MaterialId>(target.scene.materials.size());
-    for (Material& material : model.scene.materials) {
-        target.scene.materials.push_back(std::move(material));
-    }
-    for (Mesh& mesh : model.scene.meshes) {
-        for (Part& part : mesh.parts)
-            part.material = moved(part.material, material_offset);
-        target.scene.meshes.push_back(std::move(mesh));
-    }
+    const Offsets offsets = offsets_in(target.scene);
+    append_materials(target.scene, model.scene, offsets);
+    append_with_parts(target.scene.meshes, model.scene.meshes, offsets.material);
+    append_with_parts(target.scene.sphere_sets, model.scene.sphere_sets, offsets.material);
+    append_with_parts(target.scene.cone_sets, model.scene.cone_sets, offsets.material);
     std::move(model.warnings.begin(), model.warnings.end(), std::back_inserter(target.warnings));
 
     std::vector<ModelPiece> pieces;
     pieces.reserve(model.scene.objects.size());
     for (Object& object : model.scene.objects) {
-        if (MeshInstance* instance = std::get_if<MeshInstance>(&object.shape)) {
-            instance->mesh += mesh_offset;
-        }
-        pieces.push_back({std::move(object.name), std::move(object.path), object.shape,
-                          object.world_from_object, moved(object.material, material_offset)});
+        pieces.push_back({std::move(object.name), std::move(object.path),
+                          moved(object.shape, offsets), object.world_from_object,
+                          moved(object.material, offsets.material), object.sides});
     }
     return pieces;
 }

@@ -18,6 +18,7 @@ struct ModelPiece {
     Shape shape;
     Transform model_from_object;
     MaterialId material = kNoMaterial;
+    Sides sides = Sides::both;
 };
 
 class ModelLibrary {

@@ -7,27 +7,20 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <string_view>
-#include <system_error>
 
 namespace raypick {
 
 namespace {
 
-// Keywords that are known and have no meaning here; textures come with a later version.
+// Keywords that are known and have no meaning here.
 constexpr std::array<std::string_view, 13> kPassedOver = {
     "Ka",  "sharpness", "Km",     "Pr",         "Pm",        "Ps", "Pc",
     "Pcr", "aniso",     "anisor", "bAlphatest", "bBackface", "Ms"};
-
-bool is_texture(std::string_view keyword) {
-    return keyword.substr(0, 4) == "map_" || keyword == "bump" || keyword == "disp" ||
-           keyword == "decal" || keyword == "refl" || keyword == "norm" ||
-           keyword.substr(0, 4) == "Map_";
-}
 
 class MtlParser {
 public:
@@ -66,13 +59,13 @@ private:
 
     bool read_colour(std::string_view keyword) {
         if (keyword == "Kd") {
-            colour(keyword, material_->kd);
+            if (const auto rgb = colour(keyword)) material_->kd = *rgb;
         } else if (keyword == "Ks") {
-            colour(keyword, material_->ks);
+            if (const auto rgb = colour(keyword)) material_->ks = *rgb;
         } else if (keyword == "Ke") {
-            colour(keyword, material_->ke);
+            if (const auto rgb = colour(keyword)) material_->ke = *rgb;
         } else if (keyword == "Tf") {
-            colour(keyword, material_->tf);
+            if (const auto rgb = colour(keyword)) material_->tf = *rgb;
         } else {
             return false;
         }
@@ -99,8 +92,8 @@ private:
     }
 
     void read_other(std::string_view keyword) {
-        if (is_texture(keyword)) {
-            material_->textured = true;
+        if (is_mtl_map(keyword)) {
+            read_map(keyword);
             return;
         }
         const bool known =
@@ -111,6 +104,17 @@ private:
             scanner_.place(in_quotes(keyword) + " is no MTL keyword that we know: ignored"));
     }
 
+    void read_map(std::string_view keyword) {
+        if (const std::optional<MtlMapKind> kind = mtl_map_kind(keyword)) {
+            auto map = read_mtl_map(scanner_, *kind, warnings_);
+            if (map) material_->set_map(*std::move(map));
+        } else if (keyword != "map_Ka" && keyword != "map_ka" &&
+                   told_maps_.insert(std::string(keyword)).second) {
+            warnings_.push_back(
+                scanner_.place(fmt::format("{} is not read: left out", in_quotes(keyword))));
+        }
+    }
+
     double number(std::string_view what) {
         const double value = scanner_.number(what);
         if (!std::isfinite(static_cast<float>(value)))
@@ -119,19 +123,19 @@ private:
     }
 
     // One number stands for all three. Spectral curves and CIE XYZ are not read.
-    void colour(std::string_view keyword, glm::vec3& rgb) {
+    std::optional<glm::vec3> colour(std::string_view keyword) {
         const char first = scanner_.peek();
         if (first == 's' || first == 'x') {
             warnings_.push_back(scanner_.place(
                 fmt::format("{} is only read as red, green, blue: ignored", keyword)));
-            return;
+            return std::nullopt;
         }
-        const auto r = static_cast<float>(number(keyword));
-        rgb = glm::vec3(r);
+        glm::vec3 rgb(static_cast<float>(number(keyword)));
         const char next = scanner_.peek();
-        if (next == '\n' || next == '#') return;
+        if (next == '\n' || next == '#') return rgb;
         rgb.y = static_cast<float>(number(keyword));
         rgb.z = static_cast<float>(number(keyword));
+        return rgb;
     }
 
     FileText text_;
@@ -140,24 +144,8 @@ private:
     std::vector<std::string>& warnings_;
     MtlMaterial* material_ = nullptr;
     bool told_unknown_ = false;
+    std::set<std::string> told_maps_;
 };
-
-std::string with_slashes(std::string name) {
-    std::replace(name.begin(), name.end(), '\\', '/');
-    return name;
-}
-
-// As it is named, else (an absolute path from another machine) by its last name beside the OBJ.
-std::optional<std::filesystem::path> find_beside(const std::filesystem::path& obj_file,
-                                                 const std::string& name) {
-    const std::filesystem::path folder = obj_file.parent_path();
-    const std::filesystem::path path = with_slashes(name);
-    std::error_code error;
-    for (const std::filesystem::path& candidate : {folder / path, folder / path.filename()}) {
-        if (std::filesystem::is_regular_file(candidate, error)) return candidate;
-    }
-    return std::nullopt;
-}
 
 }  // namespace
 
@@ -168,14 +156,15 @@ void read_mtl(const std::filesystem::path& file, MtlLibrary& library,
 
 MtlPaths find_mtl(const std::filesystem::path& obj_file, const std::string& names) {
     MtlPaths paths;
-    if (auto whole = find_beside(obj_file, names)) {
+    const std::vector<std::filesystem::path> folder = {obj_file.parent_path()};
+    if (auto whole = find_named_file(folder, names)) {
         paths.found.push_back(*std::move(whole));
         return paths;
     }
     std::istringstream words(names);
     std::string word;
     while (words >> word) {
-        if (auto path = find_beside(obj_file, word)) {
+        if (auto path = find_named_file(folder, word)) {
             paths.found.push_back(*std::move(path));
         } else {
             paths.missing.push_back(word);

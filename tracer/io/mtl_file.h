@@ -15,9 +15,9 @@ using MtlLibrary = std::map<std::string, MtlMaterial, std::less<>>;
 void read_mtl(const std::filesystem::path& file, MtlLibrary& library,
               std::vector<std::string>& warnings);
 
-// Finds the files that an OBJ's mtllib line names, beside the OBJ: the whole rest of the line as
-// one name, else its words. Backslashes are folders too. Names that lead nowhere come back as they
-// are in `missing`.
+// Finds the files that an OBJ's mtllib line names, beside the OBJ (find_named_file): the whole rest
+// of the line as one name, else its words. Names that lead nowhere come back as they are in
+// `missing`.
 struct MtlPaths {
     std::vector<std::filesystem::path> found;
     std::vector<std::string> missing;

@@ -4,6 +4,7 @@
 #include "tracer/io/load_steps.h"
 #include "tracer/io/mesh_build.h"
 #include "tracer/io/mtl_file.h"
+#include "tracer/io/mtl_textures.h"
 #include "tracer/io/obj_file.h"
 #include "tracer/io/polygon.h"
 
@@ -100,6 +101,7 @@ public:
           loaded_(loaded),
           origin_(origin_of(obj)),
           merger_(obj.positions.size()),
+          textures_(loaded, file),
           material_ids_(obj.materials.size()) {}
 
     void assemble() {
@@ -108,9 +110,10 @@ public:
             collect_objects(obj_, clean_name(file_.stem().string()));
         for (std::size_t i = 0; i < objects.size(); ++i) {
             load_step(options_,
-                      0.6f + 0.4f * static_cast<float>(i) / static_cast<float>(objects.size()));
+                      0.6f + 0.2f * static_cast<float>(i) / static_cast<float>(objects.size()));
             add(objects[i]);
         }
+        textures_.finish(options_, 0.8f, 1.0f);
         warn_of_materials();
     }
 
@@ -202,19 +205,15 @@ private:
         material.name = name;
         if (found != library_.end()) {
             material = material_from(found->second);
-            textured_ += found->second.textured ? 1 : 0;
         } else {
             unknown_.push_back(name);
         }
         id = add_material(loaded_.scene, std::move(material));
+        if (found != library_.end()) textures_.request(*id, found->second);
         return *id;
     }
 
     void warn_of_materials() {
-        if (textured_ > 0) {
-            loaded_.warnings.push_back(warning(
-                file_, fmt::format("{} materials have textures, which are not shown", textured_)));
-        }
         if (library_missing_ || unknown_.empty()) return;  // told already, or nothing to tell
         if (obj_.libraries.empty()) {
             loaded_.warnings.push_back(
@@ -233,12 +232,12 @@ private:
     LoadedScene& loaded_;
     glm::dvec3 origin_;
     CornerMerger merger_;
+    MtlTextures textures_;
     PolygonSplitter splitter_;
     MtlLibrary library_;
     std::vector<std::optional<MaterialId>> material_ids_;
     std::vector<std::string> unknown_;
     bool library_missing_ = false;
-    int textured_ = 0;
     std::vector<std::uint32_t> numbers_;
     std::vector<glm::dvec3> points_;
 };

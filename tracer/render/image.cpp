@@ -3,16 +3,12 @@
 #include "tracer/accel/hit.h"
 #include "tracer/error.h"
 #include "tracer/render/image_files.h"
-
-#include <fmt/format.h>
+#include "tracer/temporary_file.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <limits>
-#include <system_error>
-
-#include <unistd.h>
 
 namespace raypick {
 
@@ -24,35 +20,6 @@ std::string lower_extension(const std::filesystem::path& file) {
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return extension;
 }
-
-// A name beside the target that no other process uses; removed unless renamed.
-class TemporaryFile {
-public:
-    explicit TemporaryFile(const std::filesystem::path& target)
-        : target_(target), path_(target.string() + fmt::format(".{}.part", ::getpid())) {}
-    ~TemporaryFile() {
-        std::error_code ignored;
-        if (!renamed_) std::filesystem::remove(path_, ignored);
-    }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-    void rename() {
-        std::error_code failure;
-        std::filesystem::rename(path_, target_, failure);
-        if (failure) {
-            throw FileError(target_.string(), "can't be written: " + failure.message());
-        }
-        renamed_ = true;
-    }
-
-private:
-    std::filesystem::path target_;
-    std::filesystem::path path_;
-    bool renamed_ = false;
-};
 
 }  // namespace
 

@@ -1,51 +1,22 @@
 #include "tracer/render/render_job.h"
 
-#include "tracer/error.h"
 #include "tracer/parallel/parallel.h"
+#include "tracer/render/pixel_tracer.h"
+#include "tracer/render/tiles.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
+#include <cmath>
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 namespace raypick {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-// Pixels [row_begin, row_end) x [col_begin, col_end).
-struct Tile {
-    int row_begin = 0;
-    int row_end = 0;
-    int col_begin = 0;
-    int col_end = 0;
-
-    [[nodiscard]] ImageSize size() const { return {row_end - row_begin, col_end - col_begin}; }
-    [[nodiscard]] double distance_squared(ImageSize image) const {
-        const double r = 0.5 * (row_begin + row_end - image.rows);
-        const double c = 0.5 * (col_begin + col_end - image.cols);
-        return r * r + c * c;
-    }
-};
-
-// All tiles of an image, those nearest to its centre first.
-std::vector<Tile> tiles_from_centre(ImageSize size) {
-    std::vector<Tile> tiles;
-    constexpr int kStep = RenderJob::kTileSize;
-    for (int row = 0; row < size.rows; row += kStep) {
-        for (int col = 0; col < size.cols; col += kStep) {
-            tiles.push_back(
-                {row, std::min(row + kStep, size.rows), col, std::min(col + kStep, size.cols)});
-        }
-    }
-    std::stable_sort(tiles.begin(), tiles.end(), [&](const Tile& a, const Tile& b) {
-        return a.distance_squared(size) < b.distance_squared(size);
-    });
-    return tiles;
-}
 
 // The centre of the coarse block that holds a pixel; blocks are cut off at the image's edge.
 Pixel coarse_sample(Pixel pixel, ImageSize size) {
@@ -56,90 +27,52 @@ Pixel coarse_sample(Pixel pixel, ImageSize size) {
     return {along(pixel.row, size.rows), along(pixel.col, size.cols)};
 }
 
-void store(Image& image, std::size_t index, const TracedRay& traced) {
-    image.colour[index] = traced.colour;
-    if (!traced.hit.valid()) return;
-    image.depth[index] = traced.hit.t;
-    image.normal[index] = traced.normal;
-    image.object[index] = traced.hit.object;
-    image.primitive[index] = traced.hit.primitive;
-}
-
-template <typename T>
-void copy_rows(const std::vector<T>& from, const Tile& tile, std::vector<T>& to, ImageSize size) {
-    const ImageSize small = tile.size();
-    for (int row = 0; row < small.rows; ++row) {
-        const auto first = from.begin() + static_cast<std::ptrdiff_t>(small.index({row, 0}));
-        std::copy(first, first + small.cols,
-                  to.begin() + static_cast<std::ptrdiff_t>(
-                                   size.index({tile.row_begin + row, tile.col_begin})));
+// How many passes over the image show the samples one by one.
+int pass_count(const PixelTracer& tracer, bool progressive) {
+    const int of_samples = progressive ? tracer.sample_count() : 1;
+    switch (tracer.settings().sampling) {
+        case Sampling::centre:
+        case Sampling::corners:
+            return 1;
+        case Sampling::stratified:
+            return of_samples;
+        case Sampling::adaptive:
+            return 1 + of_samples;
     }
-}
-
-void copy_tile(const Image& from, const Tile& tile, Image& to) {
-    copy_rows(from.colour, tile, to.colour, to.size);
-    copy_rows(from.depth, tile, to.depth, to.size);
-    copy_rows(from.normal, tile, to.normal, to.size);
-    copy_rows(from.object, tile, to.object, to.size);
-    copy_rows(from.primitive, tile, to.primitive, to.size);
-}
-
-// What a frame is traced from; immutable while it is.
-class FrameTracer {
-public:
-    FrameTracer(std::shared_ptr<const Accel> accel, const Camera& camera, ImageSize size,
-                const RenderSettings& settings)
-        : accel_(std::move(accel)),
-          camera_(camera),
-          size_(size),
-          settings_(settings),
-          rays_(camera, size),
-          lights_(effective_lights(accel_->scene(), camera)) {}
-
-    [[nodiscard]] TracedRay pixel(Pixel p, RayCounts& counts, const std::stop_token& stop) const {
-        return trace(*accel_, lights_, settings_, rays_.ray(pixel_centre(p)), counts, stop);
-    }
-    [[nodiscard]] const Camera& camera() const { return camera_; }
-    [[nodiscard]] ImageSize size() const { return size_; }
-    [[nodiscard]] int threads() const { return settings_.threads; }
-
-private:
-    std::shared_ptr<const Accel> accel_;
-    Camera camera_;
-    ImageSize size_;
-    RenderSettings settings_;
-    RayGenerator rays_;
-    std::vector<Light> lights_;
-};
-
-// Checked before any of it is used.
-FrameTracer checked_tracer(std::shared_ptr<const Accel> accel, const Camera& camera, ImageSize size,
-                           const RenderSettings& settings) {
-    check_camera(camera);
-    if (size.rows <= 0 || size.cols <= 0) throw Error("an image needs at least one row and column");
-    return {std::move(accel), camera, size, settings};
+    return 1;
 }
 
 }  // namespace
 
 struct RenderJob::State {
     State(std::shared_ptr<const Accel> accel, const Camera& camera, ImageSize size,
-          const RenderSettings& settings)
-        : tracer(checked_tracer(std::move(accel), camera, size, settings)),
+          const RenderSettings& settings, bool watched)
+        : tracer(std::move(accel), camera, size, settings),
+          progressive(watched),
+          passes(pass_count(tracer, watched)),
           tiles(tiles_from_centre(size)),
           start(Clock::now()),
           image(make_image(size)),
-          done(size.pixel_count(), 0) {}
+          done(size.pixel_count(), 0),
+          broken(size.pixel_count(), 0) {}
 
-    FrameTracer tracer;
-    std::vector<Tile> tiles;
-    Clock::time_point start;
+    const PixelTracer tracer;
+    const bool progressive;
+    const int passes;
+    const std::vector<Tile> tiles;
+    const Clock::time_point start;
     std::stop_source stop;
+
+    // The workers' own: each touches only its tile's pixels, and passes don't overlap.
+    std::vector<PixelMean> means;        // of a progressive job, from its first sample on
+    std::vector<std::uint8_t> refining;  // of adaptive sampling: pixels worth more samples
 
     mutable std::mutex mutex;  // guards what follows, up to `failure`
     Image image;
-    std::vector<std::uint8_t> done;  // per pixel: shows its own sample
-    std::size_t done_count = 0;
+    std::vector<std::uint8_t> done;    // per pixel: shows its own samples
+    std::vector<std::uint8_t> broken;  // per pixel: came out as no number
+    std::uint64_t broken_count = 0;
+    std::size_t done_count = 0;  // pixels times passes
     RayCounts rays;
     std::uint64_t version = 0;
     bool finished = false;
@@ -148,28 +81,41 @@ struct RenderJob::State {
 
     std::jthread thread;  // last: joined before anything else goes
 
-    void run(bool coarse_first);
+    void run();
+    void run_passes();
+    template <typename Body>
+    void each_tile(const Body& body);
+
     void coarse_tile(const Tile& tile);
     void show_coarse();
-    void fine_tile(const Tile& tile);
-    void publish(const Tile& tile, const Image& part, const RayCounts& counts, bool final);
+    void centre_tile(const Tile& tile);
+    void corner_tile(const Tile& tile);
+    void sample_passes();
+    void choose_refined(const Tile& tile);
+    void sample_tile(const Tile& tile, int first, int end);
+    [[nodiscard]] TilePart begun_part(const Tile& tile, bool first_pass) const;
+
+    enum class Piece { coarse, whole, colour };
+    void publish(const TilePart& part, Piece piece);
+    [[nodiscard]] bool stopped() const { return stop.stop_requested(); }
+    [[nodiscard]] std::size_t work() const {
+        return image.size.pixel_count() * static_cast<std::size_t>(passes);
+    }
     [[nodiscard]] double elapsed() const {
         return std::chrono::duration<double>(Clock::now() - start).count();
     }
 };
 
-void RenderJob::State::run(bool coarse_first) {
+template <typename Body>
+void RenderJob::State::each_tile(const Body& body) {
+    parallel_for(tiles.size(), tracer.settings().threads, stop.get_token(),
+                 [&](std::size_t i) { body(tiles[i]); });
+}
+
+void RenderJob::State::run() {
     std::exception_ptr thrown;
     try {
-        const auto each_tile = [&](void (State::*body)(const Tile&)) {
-            parallel_for(tiles.size(), tracer.threads(), stop.get_token(),
-                         [&](std::size_t i) { (this->*body)(tiles[i]); });
-        };
-        if (coarse_first) {
-            each_tile(&State::coarse_tile);
-            show_coarse();
-        }
-        each_tile(&State::fine_tile);
+        run_passes();
     } catch (...) {
         thrown = std::current_exception();
     }
@@ -180,58 +126,188 @@ void RenderJob::State::run(bool coarse_first) {
     if (version > 0) ++version;
 }
 
+void RenderJob::State::run_passes() {
+    if (progressive) {
+        each_tile([this](const Tile& tile) { coarse_tile(tile); });
+        show_coarse();
+    }
+    switch (tracer.settings().sampling) {
+        case Sampling::centre:
+            each_tile([this](const Tile& tile) { centre_tile(tile); });
+            break;
+        case Sampling::corners:
+            each_tile([this](const Tile& tile) { corner_tile(tile); });
+            break;
+        case Sampling::stratified:
+            sample_passes();
+            break;
+        case Sampling::adaptive:
+            each_tile([this](const Tile& tile) { centre_tile(tile); });
+            if (stopped()) return;
+            refining.resize(image.size.pixel_count());
+            each_tile([this](const Tile& tile) { choose_refined(tile); });
+            sample_passes();
+            break;
+    }
+}
+
 void RenderJob::State::show_coarse() {
-    if (stop.stop_requested()) return;
+    if (stopped()) return;
     const std::lock_guard lock(mutex);
     ++version;
 }
 
 void RenderJob::State::coarse_tile(const Tile& tile) {
-    const ImageSize size = tracer.size();
-    Image part = make_image(tile.size());
+    TilePart part(tile);
     RayCounts not_counted;  // these pixels are traced again
     const std::stop_token token = stop.get_token();
-    for (int row = 0; row < part.size.rows; row += kCoarseStep) {
-        for (int col = 0; col < part.size.cols; col += kCoarseStep) {
-            if (token.stop_requested()) return;
-            const Pixel sample = coarse_sample({tile.row_begin + row, tile.col_begin + col}, size);
-            const TracedRay traced = tracer.pixel(sample, not_counted, token);
-            for (int r = row; r < std::min(row + kCoarseStep, part.size.rows); ++r) {
-                for (int c = col; c < std::min(col + kCoarseStep, part.size.cols); ++c) {
-                    store(part, part.size.index({r, c}), traced);
-                }
+    const ImageSize size = part.image.size;
+    for (int row = 0; row < size.rows; row += kCoarseStep) {
+        for (int col = 0; col < size.cols; col += kCoarseStep) {
+            if (stopped()) return;
+            const Pixel sample = coarse_sample(tile.in_image({row, col}), tracer.size());
+            const TracedRay traced = tracer.centre(sample, not_counted, token);
+            for (int r = row; r < std::min(row + kCoarseStep, size.rows); ++r) {
+                for (int c = col; c < std::min(col + kCoarseStep, size.cols); ++c)
+                    part.set(size.index({r, c}), traced);
             }
         }
     }
-    publish(tile, part, {}, false);
+    publish(part, Piece::coarse);
 }
 
-void RenderJob::State::fine_tile(const Tile& tile) {
-    Image part = make_image(tile.size());
-    RayCounts counts;
+void RenderJob::State::centre_tile(const Tile& tile) {
+    TilePart part(tile);
     const std::stop_token token = stop.get_token();
-    for (int row = 0; row < part.size.rows; ++row) {
-        for (int col = 0; col < part.size.cols; ++col) {
-            if (token.stop_requested()) return;
-            const Pixel pixel{tile.row_begin + row, tile.col_begin + col};
-            store(part, part.size.index({row, col}), tracer.pixel(pixel, counts, token));
+    const ImageSize size = part.image.size;
+    for (int row = 0; row < size.rows; ++row) {
+        for (int col = 0; col < size.cols; ++col) {
+            if (stopped()) return;
+            part.set(size.index({row, col}),
+                     tracer.centre(tile.in_image({row, col}), part.rays, token));
         }
     }
-    publish(tile, part, counts, true);
+    publish(part, Piece::whole);
 }
 
-void RenderJob::State::publish(const Tile& tile, const Image& part, const RayCounts& counts,
-                               bool final) {
-    if (stop.stop_requested()) return;  // the last pixel may be half traced
-    const std::lock_guard lock(mutex);
-    copy_tile(part, tile, image);
-    if (final) {
-        copy_rows(std::vector<std::uint8_t>(part.size.pixel_count(), 1), tile, done, image.size);
-        done_count += part.size.pixel_count();
+// Corners that two tiles share are traced by both, which costs a sixteenth, and counted by one.
+void RenderJob::State::corner_tile(const Tile& tile) {
+    TilePart part(tile);
+    RayCounts not_counted;
+    const std::stop_token token = stop.get_token();
+    const ImageSize size = part.image.size;
+    const ImageSize corners{size.rows + 1, size.cols + 1};
+    std::vector<glm::vec3> colours(corners.pixel_count());
+    for (int row = 0; row < corners.rows; ++row) {
+        for (int col = 0; col < corners.cols; ++col) {
+            if (stopped()) return;
+            const Pixel corner = tile.in_image({row, col});
+            const bool own = (row < size.rows || corner.row == tracer.size().rows) &&
+                             (col < size.cols || corner.col == tracer.size().cols);
+            colours[corners.index({row, col})] =
+                tracer.corner(corner, own ? part.rays : not_counted, token);
+        }
     }
-    rays += counts;
+    for (int row = 0; row < size.rows; ++row) {
+        for (int col = 0; col < size.cols; ++col) {
+            TracedRay pixel = tracer.first_hit(tile.in_image({row, col}));
+            pixel.colour = 0.25f * (colours[corners.index({row, col})] +
+                                    colours[corners.index({row, col + 1})] +
+                                    colours[corners.index({row + 1, col})] +
+                                    colours[corners.index({row + 1, col + 1})]);
+            part.set(size.index({row, col}), pixel);
+        }
+    }
+    publish(part, Piece::whole);
+}
+
+void RenderJob::State::sample_passes() {
+    const int samples = tracer.sample_count();
+    const int step = progressive ? 1 : samples;
+    if (progressive) means.resize(image.size.pixel_count());
+    for (int first = 0; first < samples && !stopped(); first += step)
+        each_tile([&](const Tile& tile) { sample_tile(tile, first, first + step); });
+}
+
+void RenderJob::State::choose_refined(const Tile& tile) {
+    const RenderSettings& settings = tracer.settings();
+    // The filter must not blend a pixel with an edge that the choice has not seen.
+    const int reach =
+        std::max(1, static_cast<int>(std::ceil(filter_radius(settings.filter) - 0.5)));
+    // Through a lens even what is of one colour in the sharp image may not be.
+    const bool all = settings.aperture > 0.0;
+    copy_tile(all ? std::vector<std::uint8_t>(tile.size().pixel_count(), 1)
+                  : contrasting_pixels(image, tile, reach, settings.contrast),
+              tile, refining, image.size);
+}
+
+// What the pixels show before these samples.
+TilePart RenderJob::State::begun_part(const Tile& tile, bool first_pass) const {
+    TilePart part(tile);
+    const ImageSize size = part.image.size;
+    for (int row = 0; row < size.rows; ++row) {
+        for (int col = 0; col < size.cols; ++col) {
+            const Pixel pixel = tile.in_image({row, col});
+            const std::size_t at = size.index({row, col});
+            if (first_pass) {
+                part.set(at, tracer.first_hit(pixel));
+            } else {
+                const std::size_t in_image = image.size.index(pixel);
+                part.image.colour[at] = image.colour[in_image];
+                part.broken[at] = broken[in_image];
+            }
+        }
+    }
+    return part;
+}
+
+// Adds samples [first, end) to each pixel that takes them.
+void RenderJob::State::sample_tile(const Tile& tile, int first, int end) {
+    const bool first_pass = first == 0 && refining.empty();
+    TilePart part = begun_part(tile, first_pass);
+    const std::stop_token token = stop.get_token();
+    const ImageSize size = part.image.size;
+    for (int row = 0; row < size.rows; ++row) {
+        for (int col = 0; col < size.cols; ++col) {
+            const Pixel pixel = tile.in_image({row, col});
+            const std::size_t in_image = image.size.index(pixel);
+            if (!refining.empty() && refining[in_image] == 0) continue;
+            PixelMean mean = means.empty() ? PixelMean{} : means[in_image];
+            for (int sample = first; sample < end; ++sample) {
+                if (stopped()) return;
+                tracer.add_sample(pixel, sample, mean, part.rays, token);
+            }
+            if (!means.empty()) means[in_image] = mean;
+            part.set_colour(size.index({row, col}), mean.colour(tracer.filter()));
+        }
+    }
+    publish(part, first_pass ? Piece::whole : Piece::colour);
+}
+
+void RenderJob::State::publish(const TilePart& part, Piece piece) {
+    if (stopped()) return;  // the last pixel may be half traced
+    const std::lock_guard lock(mutex);
+    const Tile& tile = part.tile;
+    if (piece == Piece::colour) {
+        copy_tile(part.image.colour, tile, image.colour, image.size);
+    } else {
+        copy_tile(part.image, tile, image);
+    }
     // Pieces of a coarse image are not shown: what is between them would be black.
-    if (final) ++version;
+    if (piece == Piece::coarse) return;
+    const std::size_t count = part.image.size.pixel_count();
+    for (std::size_t i = 0; i < count; ++i) {
+        const Pixel pixel = tile.in_image({static_cast<int>(i) / part.image.size.cols,
+                                           static_cast<int>(i) % part.image.size.cols});
+        std::uint8_t& was = broken[image.size.index(pixel)];
+        broken_count += part.broken[i];
+        broken_count -= was;
+        was = part.broken[i];
+    }
+    copy_tile(std::vector<std::uint8_t>(count, 1), tile, done, image.size);
+    done_count += count;
+    rays += part.rays;
+    ++version;
 }
 
 Pixel FrameSnapshot::sampled_pixel(Pixel pixel) const {
@@ -240,10 +316,9 @@ Pixel FrameSnapshot::sampled_pixel(Pixel pixel) const {
 }
 
 RenderJob::RenderJob(std::shared_ptr<const Accel> accel, const Camera& camera, ImageSize size,
-                     const RenderSettings& settings, bool coarse_first)
-    : state_(std::make_unique<State>(std::move(accel), camera, size, settings)) {
-    state_->thread =
-        std::jthread([state = state_.get(), coarse_first] { state->run(coarse_first); });
+                     const RenderSettings& settings, bool progressive)
+    : state_(std::make_unique<State>(std::move(accel), camera, size, settings, progressive)) {
+    state_->thread = std::jthread([state = state_.get()] { state->run(); });
 }
 
 RenderJob::~RenderJob() {
@@ -263,14 +338,18 @@ void RenderJob::wait() {
 RenderProgress RenderJob::progress() const {
     const std::lock_guard lock(state_->mutex);
     RenderProgress progress;
-    progress.fraction = static_cast<double>(state_->done_count) /
-                        static_cast<double>(state_->image.size.pixel_count());
+    const std::size_t pixels = state_->image.size.pixel_count();
+    progress.fraction =
+        static_cast<double>(state_->done_count) / static_cast<double>(state_->work());
+    progress.passes = state_->passes;
+    progress.pass = std::min(static_cast<int>(state_->done_count / pixels) + 1, state_->passes);
     progress.seconds = state_->finished ? state_->seconds : state_->elapsed();
     progress.rays = state_->rays;
+    progress.nan_pixels = state_->broken_count;
     progress.version = state_->version;
     progress.finished = state_->finished;
     progress.cancelled =
-        state_->finished && !state_->failure && state_->done_count < state_->done.size();
+        state_->finished && !state_->failure && state_->done_count < state_->work();
     return progress;
 }
 
@@ -297,6 +376,7 @@ RenderedFrame render(std::shared_ptr<const Accel> accel, const Camera& camera, I
     RenderedFrame frame;
     const RenderProgress progress = job.progress();
     frame.rays = progress.rays;
+    frame.nan_pixels = progress.nan_pixels;
     frame.seconds = progress.seconds;
     FrameSnapshot snapshot;
     job.snapshot(snapshot);

@@ -14,18 +14,21 @@
 namespace raypick {
 
 struct RenderProgress {
-    double fraction = 0.0;  // of the full-resolution pixels
-    double seconds = 0.0;   // since the start; stops at the end
+    double fraction = 0.0;  // of the work: pixels times passes
+    int pass = 1;           // the one at work, from 1 to passes
+    int passes = 1;
+    double seconds = 0.0;  // since the start; stops at the end
     RayCounts rays;
-    std::uint64_t version = 0;  // grows whenever the image changed; 0: no whole image yet
-    bool finished = false;      // ended for whatever reason
+    std::uint64_t nan_pixels = 0;  // whose colour or normal is no number; 0 in the image
+    std::uint64_t version = 0;     // grows whenever the image changed; 0: no whole image yet
+    bool finished = false;         // ended for whatever reason
     bool cancelled = false;
 };
 
 // What a job has traced so far.
 struct FrameSnapshot {
     Image image;
-    std::vector<std::uint8_t> traced;  // a pixel: 1 if it shows its own sample
+    std::vector<std::uint8_t> traced;  // a pixel: 1 if it shows its own samples
     std::uint64_t version = 0;
 
     // The pixel whose sample is shown at `pixel`: itself if it was traced, before that its coarse
@@ -33,20 +36,25 @@ struct FrameSnapshot {
     [[nodiscard]] Pixel sampled_pixel(Pixel pixel) const;
 };
 
-// Traces one frame on worker threads: a coarse image first (one pixel in kCoarseStep x kCoarseStep
-// at each block's centre fills its block), then tiles at full resolution from the centre outwards.
-// The finished image is bit for bit the same for any number of threads. It works on an immutable
+// Traces one frame on worker threads, in tiles from the centre outwards. The finished image is bit
+// for bit the same for any number of threads, progressive or not. It works on an immutable
 // snapshot: nothing that happens to the scene elsewhere reaches it. The destructor cancels and
 // joins.
+//
+// A progressive job is there to be watched: first it makes a coarse image (one pixel in kCoarseStep
+// x kCoarseStep at each block's centre fills its block), then, with several samples a pixel, each
+// pass over the image adds one of them, and the image is the mean so far.
+//
+// All channels but the colour are those of the ray through the pixel's centre, however the pixel is
+// sampled: what a pick there hits.
 class RenderJob {
 public:
     static constexpr int kCoarseStep = 8;
-    static constexpr int kTileSize = 32;
 
-    // Starts at once. `camera.near` limits the eye rays. Who won't look at it before it is done
-    // leaves the coarse image out. Throws Error on a bad camera or an empty size.
+    // Starts at once. `camera.near` limits the eye rays. Throws Error on a bad camera, an empty
+    // size or bad settings (check_settings).
     RenderJob(std::shared_ptr<const Accel> accel, const Camera& camera, ImageSize size,
-              const RenderSettings& settings, bool coarse_first = true);
+              const RenderSettings& settings, bool progressive = true);
     ~RenderJob();
     RenderJob(const RenderJob&) = delete;
     RenderJob& operator=(const RenderJob&) = delete;
@@ -74,6 +82,7 @@ private:
 struct RenderedFrame {
     Image image;
     RayCounts rays;
+    std::uint64_t nan_pixels = 0;
     double seconds = 0.0;
 };
 RenderedFrame render(std::shared_ptr<const Accel> accel, const Camera& camera, ImageSize size,

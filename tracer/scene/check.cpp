@@ -2,9 +2,11 @@
 #include "tracer/scene/scene.h"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include <cmath>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -74,10 +76,88 @@ void check_shape(const Scene& scene, const std::string& what, const MeshInstance
     }
 }
 
+void check_radius(const std::string& what, std::string_view key, double radius) {
+    check_finite(what, key, radius);
+    if (!(radius > 0.0)) complain(what, key, "positive", radius);
+}
+
+void check_shape(const Scene&, const std::string& what, const Disk& disk) {
+    check_finite(what, "centre", disk.centre);
+    check_direction(what, "normal", disk.normal);
+    check_radius(what, "radius", disk.radius);
+    check_finite(what, "inner_radius", disk.inner_radius);
+    if (!(disk.inner_radius >= 0.0)) {
+        complain(what, "inner_radius", "0 or more", disk.inner_radius);
+    }
+    if (!(disk.inner_radius < disk.radius)) {
+        complain(what, "inner_radius", fmt::format("less than the radius {}", disk.radius),
+                 disk.inner_radius);
+    }
+}
+
+void check_shape(const Scene&, const std::string& what, const Rectangle& rectangle) {
+    check_finite(what, "corner", rectangle.corner);
+    check_direction(what, "edge_u", rectangle.edge_u);
+    check_direction(what, "edge_v", rectangle.edge_v);
+    const glm::dvec3 u = glm::normalize(rectangle.edge_u);
+    const glm::dvec3 v = glm::normalize(rectangle.edge_v);
+    if (!(glm::length(glm::cross(u, v)) > 1e-12)) {
+        throw Error(fmt::format("{}: edge_v must not be parallel to edge_u, but {} {} {} is", what,
+                                rectangle.edge_v.x, rectangle.edge_v.y, rectangle.edge_v.z));
+    }
+}
+
+void check_shape(const Scene&, const std::string& what, const Cone& cone) {
+    check_finite(what, "base", cone.base);
+    check_finite(what, "apex", cone.apex);
+    check_finite(what, "base_radius", cone.base_radius);
+    check_finite(what, "apex_radius", cone.apex_radius);
+    if (!(cone.base_radius >= 0.0)) complain(what, "base_radius", "0 or more", cone.base_radius);
+    if (!(cone.apex_radius >= 0.0)) complain(what, "apex_radius", "0 or more", cone.apex_radius);
+    if (cone.base_radius == 0.0 && cone.apex_radius == 0.0) {
+        throw Error(what + ": base_radius and apex_radius must not both be 0");
+    }
+    if (cone.base == cone.apex) {
+        throw Error(fmt::format("{}: base and apex must not be the same point, {} {} {}", what,
+                                cone.base.x, cone.base.y, cone.base.z));
+    }
+}
+
+void check_shape(const Scene&, const std::string& what, const Torus& torus) {
+    check_finite(what, "centre", torus.centre);
+    check_direction(what, "axis", torus.axis);
+    check_radius(what, "major_radius", torus.major_radius);
+    check_radius(what, "minor_radius", torus.minor_radius);
+    if (!(torus.minor_radius <= torus.major_radius)) {
+        complain(what, "minor_radius",
+                 fmt::format("no more than the major_radius {}", torus.major_radius),
+                 torus.minor_radius);
+    }
+}
+
+void check_set_id(const std::string& what, std::string_view kind, SetId id, std::size_t count) {
+    if (id < count) return;
+    throw Error(fmt::format("{}: {} {} does not exist: the scene has {}", what, kind, id, count));
+}
+
+void check_shape(const Scene& scene, const std::string& what, const SphereSetInstance& instance) {
+    check_set_id(what, "sphere set", instance.set, scene.sphere_sets.size());
+}
+
+void check_shape(const Scene& scene, const std::string& what, const ConeSetInstance& instance) {
+    check_set_id(what, "cone set", instance.set, scene.cone_sets.size());
+}
+
 void check_material_id(const Scene& scene, const std::string& what, MaterialId id) {
     if (id == kNoMaterial || id < scene.materials.size()) return;
     throw Error(fmt::format("{}: material {} does not exist: the scene has {}", what, id,
                             scene.materials.size()));
+}
+
+void check_part_materials(const Scene& scene, const std::string& what,
+                          std::span<const Part> parts) {
+    for (const Part& part : parts)
+        check_material_id(scene, what, part.material);
 }
 
 void check_object(const Scene& scene, const Object& object) {
@@ -94,30 +174,107 @@ void check_object(const Scene& scene, const Object& object) {
     check_material_id(scene, what, object.material);
 }
 
-void check_material(const Material& material) {
+void check_not_negative(const std::string& what, std::string_view key, double value) {
+    check_finite(what, key, value);
+    if (value < 0.0) complain(what, key, "0 or more", value);
+}
+
+void check_not_negative(const std::string& what, std::string_view key, const glm::vec3& v) {
+    check_not_negative(what, key, v.x);
+    check_not_negative(what, key, v.y);
+    check_not_negative(what, key, v.z);
+}
+
+void check_fraction(const std::string& what, std::string_view key, double value) {
+    if (!(value >= 0.0 && value <= 1.0)) complain(what, key, "between 0 and 1", value);
+}
+
+void check_map(const Scene& scene, const std::string& what, const TextureMap& map) {
+    if (!map) return;
+    if (map.texture >= scene.textures.size()) {
+        throw Error(fmt::format("{}: texture {} does not exist: the scene has {}", what,
+                                map.texture, scene.textures.size()));
+    }
+    check_finite(what, "texture transform", map.u_row);
+    check_finite(what, "texture transform", map.v_row);
+    check_finite(what, "texture base", map.base);
+    check_finite(what, "texture gain", map.gain);
+}
+
+void check_material(const Scene& scene, const Material& material) {
     const std::string what = describe("material", material.name);
-    check_finite(what, "ambient", material.ambient);
-    check_finite(what, "diffuse", material.diffuse);
-    check_finite(what, "specular", material.specular);
-    check_finite(what, "shininess", material.shininess);
-    check_finite(what, "emissive", material.emissive);
-    check_finite(what, "reflect", material.reflect);
-    check_finite(what, "transmit", material.transmit);
+    check_not_negative(what, "ambient", material.ambient);
+    check_not_negative(what, "diffuse", material.diffuse);
+    check_not_negative(what, "specular", material.specular);
+    check_not_negative(what, "shininess", material.shininess);
+    check_not_negative(what, "emissive", material.emissive);
+    check_not_negative(what, "reflect", material.reflect);
+    check_not_negative(what, "transmit", material.transmit);
+    check_not_negative(what, "absorption", material.absorption);
     check_finite(what, "ior", material.ior);
-    if (material.shininess < 0.0f) complain(what, "shininess", "0 or more", material.shininess);
     if (!(material.ior > 0.0f)) complain(what, "ior", "positive", material.ior);
+    check_fraction(what, "opacity", material.opacity);
+    check_fraction(what, "alpha_cutoff", material.alpha_cutoff);
+    for (const TextureMap& map : material.maps)
+        check_map(scene, what, map);
+}
+
+void check_attenuation(const std::string& what, const Attenuation& attenuation) {
+    check_not_negative(what, "constant attenuation", attenuation.constant);
+    check_not_negative(what, "linear attenuation", attenuation.linear);
+    check_not_negative(what, "quadratic attenuation", attenuation.quadratic);
+    if (attenuation == Attenuation{0.0, 0.0, 0.0}) {
+        throw Error(what + ": attenuation must not be all 0: it divides the light");
+    }
+}
+
+void check_samples(const std::string& what, int samples) {
+    if (samples < 1 || samples > 64) complain(what, "samples", "from 1 to 64", samples);
 }
 
 void check_light(const PointLight& light) {
     const std::string what = describe("light", light.name);
     check_finite(what, "position", light.position);
-    check_finite(what, "colour", light.colour);
+    check_not_negative(what, "colour", light.colour);
+    check_attenuation(what, light.attenuation);
 }
 
 void check_light(const DirectionalLight& light) {
     const std::string what = describe("light", light.name);
     check_direction(what, "direction", light.direction);
-    check_finite(what, "colour", light.colour);
+    check_not_negative(what, "colour", light.colour);
+}
+
+void check_light(const SpotLight& light) {
+    const std::string what = describe("light", light.name);
+    check_finite(what, "position", light.position);
+    check_direction(what, "direction", light.direction);
+    check_not_negative(what, "colour", light.colour);
+    check_attenuation(what, light.attenuation);
+    check_not_negative(what, "inner_degrees", light.inner_degrees);
+    if (!(light.outer_degrees >= light.inner_degrees && light.outer_degrees <= 90.0)) {
+        complain(what, "outer_degrees", "between inner_degrees and 90", light.outer_degrees);
+    }
+}
+
+void check_light(const SphereLight& light) {
+    const std::string what = describe("light", light.name);
+    check_finite(what, "centre", light.centre);
+    check_finite(what, "radius", light.radius);
+    if (!(light.radius > 0.0)) complain(what, "radius", "positive", light.radius);
+    check_not_negative(what, "colour", light.colour);
+    check_attenuation(what, light.attenuation);
+    check_samples(what, light.samples);
+}
+
+void check_light(const RectangleLight& light) {
+    const std::string what = describe("light", light.name);
+    check_finite(what, "corner", light.corner);
+    check_direction(what, "edge_u", light.edge_u);
+    check_direction(what, "edge_v", light.edge_v);
+    check_not_negative(what, "colour", light.colour);
+    check_attenuation(what, light.attenuation);
+    check_samples(what, light.samples);
 }
 
 void check_named_camera(const NamedCamera& named) {
@@ -144,14 +301,20 @@ void check_scene(const Scene& scene) {
     check_ids(scene);
     for (const Mesh& mesh : scene.meshes) {
         check_mesh(mesh);
-        for (const Part& part : mesh.parts) {
-            check_material_id(scene, describe("mesh", mesh.name), part.material);
-        }
+        check_part_materials(scene, describe("mesh", mesh.name), mesh.parts);
+    }
+    for (const SphereSet& set : scene.sphere_sets) {
+        check_set(set);
+        check_part_materials(scene, describe("sphere set", set.name), set.parts);
+    }
+    for (const ConeSet& set : scene.cone_sets) {
+        check_set(set);
+        check_part_materials(scene, describe("cone set", set.name), set.parts);
     }
     for (const Object& object : scene.objects)
         check_object(scene, object);
     for (const Material& material : scene.materials)
-        check_material(material);
+        check_material(scene, material);
     for (const Light& light : scene.lights) {
         std::visit([](const auto& kind) { check_light(kind); }, light);
     }

@@ -53,17 +53,28 @@ glm::dvec3 above_plane(const glm::dvec3& eye_side, const glm::dvec3& normal) {
     return unit + (std::max(std::abs(height), 0.4) - height) * normal;
 }
 
+// Frames the scene from the default side, with this camera's up, fovy and projection.
 Camera framing_camera(const Scene& scene, const Bounds& bounds, ImageSize size,
-                      const glm::dvec3& up, double fovy) {
-    const glm::dvec3 eye_side = turn_y_to(up).vector(kDefaultEyeSide);
-    if (!bounds.empty()) return frame_bounds(bounds, -eye_side, up, fovy, size.aspect());
+                      const Camera& like) {
+    Camera camera = like;
+    camera.eye = turn_y_to(like.up).vector(kDefaultEyeSide);
+    camera.at = glm::dvec3(0.0);
+    if (!bounds.empty()) return frame_bounds(bounds, camera, size.aspect());
 
     const std::optional<WorldPlane> plane = first_visible_plane(scene);
-    if (!plane) return frame_bounds(bounds, -eye_side, up, fovy, size.aspect());
+    if (!plane) return frame_bounds(bounds, camera, size.aspect());
     Bounds around;
     around.extend(glm::vec3(plane->point - 0.5));
     around.extend(glm::vec3(plane->point + 0.5));
-    return frame_bounds(around, -above_plane(eye_side, plane->normal), up, fovy, size.aspect());
+    camera.eye = above_plane(camera.eye, plane->normal);
+    return frame_bounds(around, camera, size.aspect());
+}
+
+// The file's camera by another projection, if another is wanted.
+Camera projected(const Camera& camera, Projection projection, const Bounds& bounds) {
+    if (camera.projection == projection) return camera;
+    return projection == Projection::orthographic ? orthographic_view(camera, bounds)
+                                                  : perspective_view(camera);
 }
 
 }  // namespace
@@ -74,7 +85,10 @@ PointLight headlight(const Camera& camera) {
 
 Camera default_camera(const Scene& scene, ImageSize size, const glm::dvec3& up) {
     const Bounds bounds = scene_bounds(scene);
-    Camera camera = scene.cameras.empty() ? framing_camera(scene, bounds, size, up, kDefaultFovy)
+    Camera like;
+    like.up = up;
+    like.fovy = kDefaultFovy;
+    Camera camera = scene.cameras.empty() ? framing_camera(scene, bounds, size, like)
                                           : scene.cameras.front().camera;
     camera.near = near_for_bounds(camera, bounds);
     return camera;
@@ -85,13 +99,22 @@ Camera choose_camera(const Scene& scene, ImageSize size, const CameraOverride& w
     Camera camera = from_file ? scene.cameras.front().camera : Camera{};
     if (wanted.up) camera.up = *wanted.up;
     camera.fovy = wanted.fovy.value_or(from_file ? camera.fovy : kDefaultFovy);
-    // Before up and fovy are used to frame the scene.
+    const Projection projection =
+        wanted.projection.value_or(wanted.fovy ? Projection::perspective : camera.projection);
+    if (wanted.height) camera.height = *wanted.height;
+    // Before any of it is used to frame the scene.
     check_camera(camera);
     const Bounds bounds = scene_bounds(scene);
-    if (!from_file) camera = framing_camera(scene, bounds, size, camera.up, camera.fovy);
-    if (wanted.eye) camera.eye = *wanted.eye - scene.origin;
+    if (!from_file) {
+        camera.projection = projection;
+        camera = framing_camera(scene, bounds, size, camera);
+    }
     if (wanted.at) camera.at = *wanted.at - scene.origin;
+    if (wanted.eye) camera.eye = *wanted.eye - scene.origin;
     check_camera(camera);
+    camera = projected(camera, projection, bounds);
+    if (wanted.eye) camera.eye = *wanted.eye - scene.origin;
+    if (wanted.height) camera.height = *wanted.height;
     camera.near = near_for_bounds(camera, bounds);
     return camera;
 }

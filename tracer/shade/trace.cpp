@@ -1,10 +1,19 @@
 #include "tracer/shade/trace.h"
 
+#include "tracer/shade/fresnel.h"
+#include "tracer/shade/interior.h"
+#include "tracer/shade/light_sample.h"
+#include "tracer/shade/local_light.h"
+#include "tracer/shade/random.h"
+#include "tracer/shade/textured.h"
+
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
+#include <tuple>
+#include <vector>
 
 namespace raypick {
 
@@ -13,34 +22,23 @@ namespace {
 // A hit as the shading sees it: normals turned to the side the ray came from.
 struct ShadingPoint {
     const SurfacePoint& surface;
-    const Material& material;
-    glm::vec3 normal;     // shading normal
-    glm::vec3 geometric;  // geometric normal
-    glm::vec3 incoming;   // unit direction of the ray that arrived here
+    const Material& kind;      // before its maps
+    SurfaceMaterial material;  // after them
+    glm::vec3 normal;          // shading normal
+    glm::vec3 geometric;       // geometric normal
+    glm::vec3 incoming;        // unit direction of the ray that arrived here
 };
 
-ShadingPoint facing(const SurfacePoint& surface, const Material& material, const Ray& ray) {
+ShadingPoint shading_point(const Scene& scene, const SurfacePoint& surface, const Ray& ray,
+                           float width) {
+    const Material& kind = material(scene, surface.material);
     const float side = surface.front_face ? 1.0f : -1.0f;
-    return {surface, material, side * surface.shading_normal, side * surface.geometric_normal,
+    return {surface,
+            kind,
+            textured(scene, kind, surface, ray.direction, width),
+            side * mapped_normal(scene, kind, surface, ray.direction, width),
+            side * surface.geometric_normal,
             ray.direction};
-}
-
-// From a point towards a light: unit direction, distance (infinite for directional lights), colour.
-struct LightSample {
-    glm::vec3 direction{0.0f};
-    float distance = std::numeric_limits<float>::infinity();
-    glm::vec3 colour{0.0f};
-};
-
-LightSample sample(const Light& light, const glm::vec3& from) {
-    if (const auto* point = std::get_if<PointLight>(&light)) {
-        const glm::dvec3 offset = point->position - glm::dvec3(from);
-        const double distance = glm::length(offset);
-        return {glm::vec3(offset / distance), static_cast<float>(distance), point->colour};
-    }
-    const auto& directional = std::get<DirectionalLight>(light);
-    return {-glm::vec3(glm::normalize(directional.direction)),
-            std::numeric_limits<float>::infinity(), directional.colour};
 }
 
 // Mirror direction about the shading normal; about the geometric one where the former would lead
@@ -53,106 +51,342 @@ glm::vec3 reflect_direction(const ShadingPoint& point) {
     return glm::dot(mirrored, point.geometric) > 0.0f ? mirrored : about(point.geometric);
 }
 
-// Snell's law; nothing on total internal reflection.
-std::optional<glm::vec3> refract_direction(const ShadingPoint& point) {
-    const float eta = point.surface.front_face ? 1.0f / point.material.ior : point.material.ior;
-    const float cosine = -glm::dot(point.incoming, point.normal);
+// Snell's law at a normal on the ray's side; nothing on total internal reflection. `eta` is the
+// index before over the index beyond.
+std::optional<glm::vec3> refract(const glm::vec3& incoming, const glm::vec3& normal, float eta) {
+    const float cosine = -glm::dot(incoming, normal);
     const float squared = 1.0f - eta * eta * (1.0f - cosine * cosine);
     if (!(squared >= 0.0f)) return std::nullopt;
-    return glm::normalize(eta * point.incoming +
-                          (eta * cosine - std::sqrt(squared)) * point.normal);
+    return glm::normalize(eta * incoming + (eta * cosine - std::sqrt(squared)) * normal);
 }
+
+// About the shading normal; about the geometric one where the former faces away or leads the ray
+// back.
+std::optional<glm::vec3> refract_direction(const ShadingPoint& point, float eta) {
+    if (eta == 1.0f) return point.incoming;
+    if (glm::dot(point.incoming, point.normal) < 0.0f) {
+        const auto refracted = refract(point.incoming, point.normal, eta);
+        if (!refracted || glm::dot(*refracted, point.geometric) < 0.0f) return refracted;
+    }
+    return refract(point.incoming, point.geometric, eta);
+}
+
+float largest(const glm::vec3& v) {
+    return std::max({v.x, v.y, v.z});
+}
+
+// What is left after this way through a medium (Beer and Lambert's law).
+glm::vec3 passed(const Scene& scene, MaterialId medium, float distance) {
+    const glm::vec3 absorption = material(scene, medium).absorption;
+    glm::vec3 share(1.0f);
+    for (int i = 0; i < 3; ++i) {
+        if (absorption[i] > 0.0f) share[i] = std::exp(-absorption[i] * distance);
+    }
+    return share;
+}
+
+float index_of(const Scene& scene, MaterialId medium) {
+    return medium == kNoMaterial ? 1.0f : material(scene, medium).ior;
+}
+
+// How a ray got where it is.
+struct Path {
+    Interior interior;  // what it goes through
+    RayCone cone;
+    float weight = 1.0f;  // the most that it can add to its pixel
+    int depth = 1;        // an eye ray has 1
+};
+
+// A surface with the glass on both sides of it, as one ray meets it.
+struct Boundary {
+    Crossing crossing;  // before == after where the surface bounds no body
+    float eta = 1.0f;   // index before over index beyond
+
+    [[nodiscard]] bool is_there() const { return !bounds_body || crossing.changes_medium(); }
+    bool bounds_body = false;
+};
+
+// What leaves a surface: shares of a mirrored and of a transmitted ray.
+struct Split {
+    glm::vec3 mirrored{0.0f};
+    glm::vec3 transmitted{0.0f};
+    std::optional<glm::vec3> through;  // direction of the transmitted ray
+};
 
 // trace(R) of the notes, with the scene and the settings at hand.
 class Tracer {
 public:
     Tracer(const Accel& accel, std::span<const Light> lights, const RenderSettings& settings,
-           RayCounts& counts, const std::stop_token& stop)
+           std::uint64_t seed, RayCounts& counts, const std::stop_token& stop)
         : accel_(accel),
           scene_(accel.scene()),
           lights_(lights),
           settings_(settings),
+          random_(seed),
           counts_(counts),
           stop_(stop) {}
 
-    TracedRay eye_ray(const Ray& ray) {
+    TracedRay eye_ray(const EyeRay& eye) {
         ++counts_.eye;
         TracedRay result;
-        const auto hit = accel_.intersect(ray);
+        Path path;
+        path.cone = eye.cone;
+        const auto hit = accel_.intersect(eye.ray);
         if (!hit) {
-            result.colour = scene_.background;
+            result.colour = environment_colour(scene_, eye.ray.direction, eye.cone.spread);
             return result;
         }
         ++counts_.eye_hits;
-        const SurfacePoint surface = surface_point(scene_, ray, *hit);
-        const ShadingPoint point = facing(surface, material(scene_, surface.material), ray);
         result.hit = *hit;
-        result.normal = point.normal;
-        result.colour = shade(point, 1);
+        result.colour = at_hit(eye.ray, *hit, path, &result.normal);
         return result;
     }
 
 private:
-    glm::vec3 secondary_ray(const ShadingPoint& from, const glm::vec3& direction, int depth) {
+    // Surfaces inside of glass of a higher priority that a ray goes through at most.
+    static constexpr int kMostHidden = 64;
+
+    // What comes along a ray, at its origin.
+    glm::vec3 follow(const Ray& ray, const Path& path, int hidden = 0) {
         if (stop_.stop_requested()) return glm::vec3(0.0f);
-        Ray ray;
-        ray.origin = offset_origin(from.surface, direction);
-        ray.direction = direction;
         const auto hit = accel_.intersect(ray);
-        if (!hit) return scene_.background;
-        const SurfacePoint surface = surface_point(scene_, ray, *hit);
-        return shade(facing(surface, material(scene_, surface.material), ray), depth);
+        if (!hit) {
+            return environment_colour(scene_, ray.direction, path.cone.spread) *
+                   passed(scene_, path.interior.medium(scene_), ray.t_max);
+        }
+        return at_hit(ray, *hit, path, nullptr, hidden);
+    }
+
+    glm::vec3 at_hit(const Ray& ray, const Hit& hit, const Path& path, glm::vec3* normal,
+                     int hidden = 0) {
+        const SurfacePoint surface = surface_point(scene_, ray, hit);
+        const Boundary boundary = boundary_at(hit, surface, path.interior);
+        Path here = path;
+        here.interior = boundary.crossing.before;
+        here.cone.width = path.cone.at(hit.t);
+        const glm::vec3 share = passed(scene_, boundary.crossing.from, hit.t);
+        if (!boundary.is_there() && hidden < kMostHidden) {
+            here.interior = boundary.crossing.after;
+            Ray onwards;
+            onwards.origin = offset_origin(surface, ray.direction);
+            onwards.direction = ray.direction;
+            return share * follow(onwards, here, hidden + 1);
+        }
+        const ShadingPoint point = shading_point(scene_, surface, ray, here.cone.width);
+        if (normal != nullptr) *normal = point.normal;
+        here.weight *= largest(share);
+        return share * shade(point, boundary, here);
+    }
+
+    Boundary boundary_at(const Hit& hit, const SurfacePoint& surface, const Interior& interior) {
+        const Material& kind = material(scene_, surface.material);
+        Boundary boundary;
+        boundary.bounds_body = settings_.refractions && fills(kind);
+        if (boundary.bounds_body) {
+            const Object& object = scene_.objects[object_index(scene_, hit.object)];
+            boundary.crossing = cross_surface(scene_, interior, body_of(object, hit),
+                                              surface.material, surface.front_face);
+            boundary.eta =
+                index_of(scene_, boundary.crossing.from) / index_of(scene_, boundary.crossing.to);
+        } else {
+            const MaterialId medium = interior.medium(scene_);
+            boundary.crossing = {interior, interior, medium, medium};
+        }
+        return boundary;
     }
 
     // Steps (a) to (d): reflection, transmission, the lights, and their sum.
-    glm::vec3 shade(const ShadingPoint& point, int depth) {
-        glm::vec3 colour = local(point);
-        if (depth >= settings_.depth) return colour;
-        glm::vec3 mirrored = settings_.reflections ? point.material.reflect : glm::vec3(0.0f);
-        if (settings_.refractions && point.material.transmits()) {
-            if (const auto direction = refract_direction(point)) {
-                ++counts_.refraction;
-                colour += point.material.transmit * secondary_ray(point, *direction, depth + 1);
-            } else {
-                mirrored += point.material.transmit;  // total internal reflection
-            }
+    glm::vec3 shade(const ShadingPoint& point, const Boundary& boundary, const Path& path) {
+        const float opacity = point.material.opacity;
+        glm::vec3 colour = opacity * local(point, path);
+        if (path.depth >= settings_.depth) return colour;
+        const Split split = split_at(point, boundary);
+        if (settings_.refractions && point.kind.transmits() && split.through) {
+            colour += transmitted(point, *split.through, opacity * split.transmitted,
+                                  boundary.crossing.after, path);
         }
-        if (mirrored != glm::vec3(0.0f)) {
-            ++counts_.reflection;
-            colour += mirrored * secondary_ray(point, reflect_direction(point), depth + 1);
+        const bool mirrors =
+            settings_.reflections && (point.kind.reflects() || point.kind.transmits());
+        if (mirrors || split.mirrored != glm::vec3(0.0f)) {
+            colour += mirrored(point, opacity * split.mirrored, path);
+        }
+        if (opacity < 1.0f && settings_.refractions) {
+            colour +=
+                transmitted(point, point.incoming, glm::vec3(1.0f - opacity), path.interior, path);
         }
         return colour;
     }
 
-    glm::vec3 local(const ShadingPoint& point) {
+    Split split_at(const ShadingPoint& point, const Boundary& boundary) {
+        Split split;
+        const bool refracts = settings_.refractions && point.kind.transmits();
+        if (refracts) {
+            split.through = refract_direction(point, boundary.eta);
+            split.transmitted = point.material.transmit;
+        }
+        if (settings_.reflections) split.mirrored = point.material.reflect;
+        const float cosine = std::clamp(-glm::dot(point.incoming, point.normal), 0.0f, 1.0f);
+        if (point.kind.reflectance == Reflectance::dielectric) {
+            const float f = point.kind.thin_walled ? fresnel_sheet(cosine, 1.0f / point.kind.ior)
+                            : boundary.bounds_body ? fresnel_dielectric(cosine, boundary.eta)
+                                                   : fresnel_outside(point, cosine);
+            split.mirrored *= f;
+            if (split.through) split.transmitted *= 1.0f - f;
+        } else if (point.kind.reflectance == Reflectance::conductor &&
+                   split.mirrored != glm::vec3(0.0f)) {
+            split.mirrored = fresnel_conductor(split.mirrored, cosine);
+        }
+        if (refracts && !split.through) {  // total internal reflection
+            const bool constant = point.kind.reflectance == Reflectance::constant;
+            if (constant || !settings_.reflections) split.mirrored += split.transmitted;
+        }
+        return split;
+    }
+
+    // Of a dielectric that nothing enters: a coat of varnish.
+    static float fresnel_outside(const ShadingPoint& point, float cosine) {
+        const float ior = point.kind.ior;
+        return fresnel_dielectric(cosine, point.surface.front_face ? 1.0f / ior : ior);
+    }
+
+    [[nodiscard]] bool worth_a_ray(const Path& path) const {
+        return settings_.cutoff == 0.0f || path.weight > settings_.cutoff;
+    }
+
+    // A ray that leaves the point, with its share of the pixel.
+    Path onwards(const Path& path, const glm::vec3& share, const Interior& interior) const {
+        Path next = path;
+        next.interior = interior;
+        next.weight *= largest(share);
+        ++next.depth;
+        return next;
+    }
+
+    glm::vec3 transmitted(const ShadingPoint& point, const glm::vec3& direction,
+                          const glm::vec3& share, const Interior& interior, const Path& path) {
+        const Path next = onwards(path, share, interior);
+        if (!worth_a_ray(next)) return glm::vec3(0.0f);
+        ++counts_.refraction;
+        ++counts_.refraction_at[level(next)];
+        return share * follow(leaving(point, direction), next);
+    }
+
+    glm::vec3 mirrored(const ShadingPoint& point, const glm::vec3& share, const Path& path) {
+        const Path next = onwards(path, share, path.interior);
+        if (!worth_a_ray(next)) return glm::vec3(0.0f);
+        ++counts_.reflection;
+        ++counts_.reflection_at[level(next)];
+        return share * follow(leaving(point, reflect_direction(point)), next);
+    }
+
+    static Ray leaving(const ShadingPoint& point, const glm::vec3& direction) {
+        Ray ray;
+        ray.origin = offset_origin(point.surface, direction);
+        ray.direction = direction;
+        return ray;
+    }
+
+    static std::size_t level(const Path& path) {
+        return static_cast<std::size_t>(std::min(path.depth, kMaxDepth));
+    }
+
+    glm::vec3 local(const ShadingPoint& point, const Path& path) {
         glm::vec3 colour = point.material.emissive + point.material.ambient * scene_.ambient;
         for (const Light& light : lights_) {
-            const LightSample arriving = sample(light, point.surface.position);
-            if (!(glm::dot(point.normal, arriving.direction) > 0.0f)) continue;
-            if (settings_.shadows && shadowed(point, arriving)) continue;
-            colour += arriving.colour *
-                      phong(point.material, point.normal, arriving.direction, -point.incoming);
+            const int count = sample_count(light);
+            for (int i = 0; i < count; ++i) {
+                colour +=
+                    lit_by(point, path, light_sample(light, point.surface.position, i, random_));
+            }
         }
         return colour;
     }
 
-    bool shadowed(const ShadingPoint& point, const LightSample& light) {
+    glm::vec3 lit_by(const ShadingPoint& point, const Path& path, const LightSample& arriving) {
+        if (arriving.colour == glm::vec3(0.0f)) return glm::vec3(0.0f);
+        if (!(glm::dot(point.normal, arriving.direction) > 0.0f)) return glm::vec3(0.0f);
+        glm::vec3 share(1.0f);
+        if (settings_.shadows) share = unshadowed(point, path, arriving);
+        if (share == glm::vec3(0.0f)) return share;
+        return share * arriving.colour *
+               local_light(point.material, point.normal, arriving.direction, -point.incoming);
+    }
+
+    // The share of the light that arrives.
+    glm::vec3 unshadowed(const ShadingPoint& point, const Path& path, const LightSample& light) {
         // Behind the flat face although in front of the smooth normal: the surface shades itself.
-        if (!(glm::dot(point.geometric, light.direction) > 0.0f)) return true;
+        if (!(glm::dot(point.geometric, light.direction) > 0.0f)) return glm::vec3(0.0f);
         ++counts_.shadow;
-        Ray ray;
-        ray.origin = offset_origin(point.surface, light.direction);
-        ray.direction = light.direction;
-        ray.t_max = light.distance;
-        const bool blocked = accel_.occluded(ray);
-        if (blocked) ++counts_.shadow_blocked;
-        return blocked;
+        ++counts_.shadow_at[level(path)];
+        Ray ray = leaving(point, light.direction);
+        // Not a surface that lies in the light itself.
+        ray.t_max = light.distance * static_cast<float>(1.0 - 2.0 * kTieGap);
+        glm::vec3 share(0.0f);
+        if (settings_.glass_shadows == GlassShadows::tinted) {
+            share = transmittance(scene_, accel_, ray, path.interior, path.cone.width);
+        } else {
+            share = glm::vec3(accel_.occluded(ray) ? 0.0f : 1.0f);
+        }
+        if (share == glm::vec3(0.0f)) ++counts_.shadow_blocked;
+        return share;
+    }
+
+    // Straight through all glass; 0 if anything else is in the way.
+    glm::vec3 transmittance(const Scene& scene, const Accel& accel, const Ray& ray,
+                            const Interior& interior, float width) const {
+        std::vector<Hit> crossed;
+        const auto opaque = [&](const Hit& hit) {
+            const Object& object = scene.objects[object_index(scene, hit.object)];
+            const Material& kind = material(scene, material_id(scene, object, hit.primitive));
+            const bool see_through =
+                kind.transmits() || (kind.alpha_mode == AlphaMode::blend &&
+                                     (kind.opacity < 1.0f || kind.map(MapSlot::opacity)));
+            if (see_through) crossed.push_back(hit);
+            return !see_through;
+        };
+        RayQuery query;
+        query.accept = opaque;
+        if (accel.occluded(ray, query)) return glm::vec3(0.0f);
+        std::sort(crossed.begin(), crossed.end(), [](const Hit& a, const Hit& b) {
+            return std::tie(a.t, a.object, a.primitive) < std::tie(b.t, b.object, b.primitive);
+        });
+        return through_all(ray, crossed, interior, width);
+    }
+
+    [[nodiscard]] glm::vec3 through_all(const Ray& ray, const std::vector<Hit>& crossed,
+                                        Interior interior, float width) const {
+        glm::vec3 share(1.0f);
+        float reached = 0.0f;
+        for (const Hit& hit : crossed) {
+            const SurfacePoint surface = surface_point(scene_, ray, hit);
+            const Material& kind = material(scene_, surface.material);
+            const Object& object = scene_.objects[object_index(scene_, hit.object)];
+            bool there = true;
+            MaterialId medium = interior.medium(scene_);
+            if (fills(kind)) {
+                const Crossing crossing = cross_surface(scene_, interior, body_of(object, hit),
+                                                        surface.material, surface.front_face);
+                medium = crossing.from;
+                interior = crossing.after;
+                there = crossing.changes_medium();
+            }
+            share *= passed(scene_, medium, hit.t - reached);
+            reached = hit.t;
+            if (!there) continue;
+            const SurfaceMaterial look = textured(scene_, kind, surface, ray.direction, width);
+            share *= glm::vec3(1.0f - look.opacity) + look.opacity * look.transmit;
+        }
+        if (std::isfinite(ray.t_max)) {
+            share *= passed(scene_, interior.medium(scene_), ray.t_max - reached);
+        }
+        return share;
     }
 
     const Accel& accel_;
     const Scene& scene_;
     std::span<const Light> lights_;
     const RenderSettings& settings_;
+    RandomSequence random_;
     RayCounts& counts_;
     const std::stop_token& stop_;
 };
@@ -166,23 +400,22 @@ RayCounts& RayCounts::operator+=(const RayCounts& other) {
     refraction += other.refraction;
     shadow += other.shadow;
     shadow_blocked += other.shadow_blocked;
+    for (std::size_t i = 0; i < reflection_at.size(); ++i) {
+        reflection_at[i] += other.reflection_at[i];
+        refraction_at[i] += other.refraction_at[i];
+        shadow_at[i] += other.shadow_at[i];
+    }
     return *this;
 }
 
 TracedRay trace(const Accel& accel, std::span<const Light> lights, const RenderSettings& settings,
-                const Ray& ray, RayCounts& counts, const std::stop_token& stop) {
-    return Tracer(accel, lights, settings, counts, stop).eye_ray(ray);
+                const EyeRay& eye, RayCounts& counts, const std::stop_token& stop) {
+    return Tracer(accel, lights, settings, eye.seed, counts, stop).eye_ray(eye);
 }
 
-glm::vec3 phong(const Material& material, const glm::vec3& normal, const glm::vec3& to_light,
-                const glm::vec3& to_eye) {
-    const float diffuse = glm::dot(normal, to_light);
-    if (!(diffuse > 0.0f)) return glm::vec3(0.0f);
-    const glm::vec3 mirrored = 2.0f * diffuse * normal - to_light;
-    // GLSL leaves pow(0, 0) undefined, so both sides take 0 where the eye is not in the lobe.
-    const float lobe = glm::dot(mirrored, to_eye);
-    const float highlight = lobe > 0.0f ? std::pow(lobe, material.shininess) : 0.0f;
-    return material.diffuse * diffuse + material.specular * highlight;
+TracedRay trace(const Accel& accel, std::span<const Light> lights, const RenderSettings& settings,
+                const Ray& ray, RayCounts& counts, const std::stop_token& stop) {
+    return trace(accel, lights, settings, EyeRay{ray, {}}, counts, stop);
 }
 
 }  // namespace raypick

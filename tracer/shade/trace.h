@@ -7,11 +7,15 @@
 
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <stop_token>
 
 namespace raypick {
+
+// Of RenderSettings::depth.
+inline constexpr int kMaxDepth = 64;
 
 // Rays by kind. Sums over pixels: the same for any number of threads.
 struct RayCounts {
@@ -21,6 +25,11 @@ struct RayCounts {
     std::uint64_t refraction = 0;
     std::uint64_t shadow = 0;
     std::uint64_t shadow_blocked = 0;
+    // The same by depth: of the ray that arrives (an eye ray is depth 1), or for shadow rays of the
+    // ray whose hit they start from.
+    std::array<std::uint64_t, kMaxDepth + 1> reflection_at{};
+    std::array<std::uint64_t, kMaxDepth + 1> refraction_at{};
+    std::array<std::uint64_t, kMaxDepth + 1> shadow_at{};
 
     [[nodiscard]] std::uint64_t total() const { return eye + reflection + refraction + shadow; }
     RayCounts& operator+=(const RayCounts& other);
@@ -34,16 +43,20 @@ struct TracedRay {
     glm::vec3 normal{0.0f};  // shading normal towards the eye, scene space; 0 on a miss
 };
 
+// An eye ray with what it stands for.
+struct EyeRay {
+    Ray ray;
+    RayCone cone;            // for texture filtering
+    std::uint64_t seed = 0;  // of all that is random on its way (points on area lights)
+};
+
 // Follows an eye ray (depth 1) through the scene. `lights` as from effective_lights. Thread-safe;
 // adds the rays it shot to `counts`. Glass may spawn 2^depth rays: once `stop` is requested no more
 // are shot, and the result is worthless.
 TracedRay trace(const Accel& accel, std::span<const Light> lights, const RenderSettings& settings,
+                const EyeRay& eye, RayCounts& counts, const std::stop_token& stop = {});
+// The same for a ray of no width.
+TracedRay trace(const Accel& accel, std::span<const Light> lights, const RenderSettings& settings,
                 const Ray& ray, RayCounts& counts, const std::stop_token& stop = {});
-
-// Phong's diffuse and specular terms for a light of colour 1; 0 if it shines from behind. All
-// directions are unit; `normal` is the shading normal on the eye's side. The GLSL twin is phong()
-// in shaders/phong.glsl.
-glm::vec3 phong(const Material& material, const glm::vec3& normal, const glm::vec3& to_light,
-                const glm::vec3& to_eye);
 
 }  // namespace raypick

@@ -1,6 +1,7 @@
 #include "viewer/app/app.h"
 
 #include "viewer/app/panels.h"
+#include "viewer/app/view_words.h"
 
 #include <fmt/format.h>
 #include <glad/gl.h>
@@ -181,6 +182,30 @@ void App::apply(Command command) {
         case Command::toggle_trace:
             trace_ = !trace_;
             break;
+        case Command::toggle_projection:
+            view_.camera().toggle_projection();
+            break;
+        case Command::view_front:
+            view_.camera().look_from(ViewSide::front);
+            break;
+        case Command::view_back:
+            view_.camera().look_from(ViewSide::back);
+            break;
+        case Command::view_right:
+            view_.camera().look_from(ViewSide::right);
+            break;
+        case Command::view_left:
+            view_.camera().look_from(ViewSide::left);
+            break;
+        case Command::view_top:
+            view_.camera().look_from(ViewSide::top);
+            break;
+        case Command::view_bottom:
+            view_.camera().look_from(ViewSide::bottom);
+            break;
+        case Command::copy_view:
+            copy_view();
+            break;
         case Command::escape:
             escape();
             break;
@@ -210,6 +235,13 @@ void App::apply(Command command) {
             quit_ = true;
             break;
     }
+}
+
+void App::copy_view() {
+    if (!view_.shown()) return;
+    const ShownFrame& frame = *view_.shown();
+    window_.set_clipboard(view_words(frame.camera, frame.accel->scene().origin, frame.size));
+    message_ = "Copied the view as command-line options";
 }
 
 void App::escape() {
@@ -359,8 +391,10 @@ std::string App::hover_text() const {
 
 std::string App::view_text() const {
     if (!view_.shown()) return "F1 help";
-    return fmt::format("{}   {} x {}   F1 help", view_.shown()->traced ? "ray traced" : "OpenGL",
-                       view_.shown()->size.cols, view_.shown()->size.rows);
+    const ShownFrame& frame = *view_.shown();
+    const bool parallel = frame.camera.projection == Projection::orthographic;
+    return fmt::format("{}{}   {} x {}   F1 help", parallel ? "orthographic   " : "",
+                       frame.traced ? "ray traced" : "OpenGL", frame.size.cols, frame.size.rows);
 }
 
 std::string App::title() const {

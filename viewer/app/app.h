@@ -52,6 +52,7 @@ private:
     void apply(const OpenAction& action);
     void apply(Command command);
     void escape();
+    void copy_view();
     void frame_selected();
     void ask_for_picture_name();
     void save_picture(const std::filesystem::path& file);

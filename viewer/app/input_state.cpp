@@ -25,6 +25,14 @@ std::optional<Command> command_for(Key key, Modifiers modifiers) {
     if (modifiers.alt || modifiers.shift) return std::nullopt;
     if (modifiers.control) {
         switch (key) {
+            case Key::c:
+                return Command::copy_view;
+            case Key::one:
+                return Command::view_back;
+            case Key::three:
+                return Command::view_left;
+            case Key::seven:
+                return Command::view_bottom;
             case Key::o:
                 return Command::open;
             case Key::q:
@@ -42,6 +50,14 @@ std::optional<Command> command_for(Key key, Modifiers modifiers) {
             return Command::frame_all;
         case Key::r:
             return Command::toggle_trace;
+        case Key::one:
+            return Command::view_front;
+        case Key::three:
+            return Command::view_right;
+        case Key::five:
+            return Command::toggle_projection;
+        case Key::seven:
+            return Command::view_top;
         case Key::escape:
             return Command::escape;
         case Key::enter:

@@ -20,8 +20,16 @@ enum class Command {
     frame_selected,
     frame_all,
     toggle_trace,
-    escape,   // close what is open, else stop the render, else clear the selection
-    confirm,  // what a dialog asks
+    toggle_projection,
+    view_front,
+    view_back,
+    view_right,
+    view_left,
+    view_top,
+    view_bottom,
+    copy_view,  // as options of the command line, to the clipboard
+    escape,     // close what is open, else stop the render, else clear the selection
+    confirm,    // what a dialog asks
     toggle_help,
     toggle_panels,
     open,
@@ -31,7 +39,7 @@ enum class Command {
 };
 
 // The keys that mean something to us. Letters are those printed on the keyboard, not positions.
-enum class Key { f, h, o, q, r, s, enter, escape, f1, f12, home, tab };
+enum class Key { c, f, h, o, q, r, s, one, three, five, seven, enter, escape, f1, f12, home, tab };
 
 struct Modifiers {
     bool shift = false;

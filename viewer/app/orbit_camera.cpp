@@ -19,6 +19,16 @@ glm::dvec3 rotated(const glm::dvec3& v, const glm::dvec3& unit_axis, double radi
     return c * v + s * glm::cross(unit_axis, v) + (1.0 - c) * glm::dot(unit_axis, v) * unit_axis;
 }
 
+// Where the front of a thing is whose upright axis is this: z, turned as y is turned to the axis.
+glm::dvec3 front_of(const glm::dvec3& axis) {
+    const glm::dvec3 y{0.0, 1.0, 0.0};
+    const glm::dvec3 z{0.0, 0.0, 1.0};
+    const glm::dvec3 side = glm::cross(y, axis);
+    const double sine = glm::length(side);
+    if (sine == 0.0) return axis.y < 0.0 ? -z : z;
+    return rotated(z, side / sine, std::atan2(sine, axis.y));
+}
+
 double radius_of(const Bounds& bounds) {
     return 0.5 * glm::length(glm::dvec3(bounds.max) - glm::dvec3(bounds.min));
 }
@@ -46,6 +56,7 @@ double OrbitCamera::pivot_distance() const {
 }
 
 void OrbitCamera::fit_to_scene(const Bounds& bounds) {
+    scene_ = bounds;
     camera_.near = near_for_bounds(camera_, bounds);
     const double radius = bounds.empty() ? 0.0 : radius_of(bounds);
     if (!(radius > 0.0)) return;
@@ -68,12 +79,56 @@ void OrbitCamera::orbit(double right, double down) {
     camera_.eye = camera_.at + distance * vz;
     // Perpendicular to the view, so that the frame is defined at the poles, too.
     camera_.up = glm::cross(vz, vx);
+    stand_before_scene();
+}
+
+void OrbitCamera::look_from(ViewSide side) {
+    const glm::dvec3 front = front_of(axis_);
+    const glm::dvec3 right = glm::cross(axis_, front);
+    glm::dvec3 to_eye = front;
+    glm::dvec3 up = axis_;
+    switch (side) {
+        case ViewSide::front:
+            break;
+        case ViewSide::back:
+            to_eye = -front;
+            break;
+        case ViewSide::right:
+            to_eye = right;
+            break;
+        case ViewSide::left:
+            to_eye = -right;
+            break;
+        case ViewSide::top:
+            to_eye = axis_;
+            up = -front;
+            break;
+        case ViewSide::bottom:
+            to_eye = -axis_;
+            up = front;
+            break;
+    }
+    camera_.eye = camera_.at + pivot_distance() * to_eye;
+    camera_.up = up;
+    stand_before_scene();
+}
+
+void OrbitCamera::toggle_projection() {
+    camera_ = parallel() ? perspective_view(camera_) : orthographic_view(camera_, scene_);
+}
+
+void OrbitCamera::stand_before_scene() {
+    if (parallel()) put_eye_before(camera_, scene_);
+}
+
+double OrbitCamera::pivot_plane_height() const {
+    if (parallel()) return camera_.height;
+    return 2.0 * pivot_distance() * std::tan(0.5 * glm::radians(camera_.fovy));
 }
 
 glm::dvec3 OrbitCamera::pivot_plane_point(ImageSize size, ImagePoint at) const {
     const CameraFrame frame = camera_frame(camera_);
-    const double distance = pivot_distance();
-    const double height = 2.0 * distance * std::tan(0.5 * glm::radians(camera_.fovy));
+    const double height = pivot_plane_height();
     const double width = height * size.aspect();
     return camera_.at + width * (at.c / size.cols - 0.5) * frame.vx -
            height * (at.r / size.rows - 0.5) * frame.vy;
@@ -83,6 +138,7 @@ void OrbitCamera::pan(ImageSize size, ImagePoint from, ImagePoint to) {
     const glm::dvec3 offset = pivot_plane_point(size, from) - pivot_plane_point(size, to);
     camera_.eye += offset;
     camera_.at += offset;
+    stand_before_scene();
 }
 
 void OrbitCamera::set_pivot_depth(double depth) {
@@ -91,29 +147,35 @@ void OrbitCamera::set_pivot_depth(double depth) {
 }
 
 void OrbitCamera::zoom(ImageSize size, ImagePoint at, double factor) {
-    const double distance = pivot_distance();
-    const double wanted = std::clamp(factor * distance, min_distance_, max_distance_);
+    const double now = parallel() ? camera_.height : pivot_distance();
+    const double wanted = std::clamp(factor * now, min_distance_, max_distance_);
     const glm::dvec3 fixed = pivot_plane_point(size, at);
-    camera_.eye = fixed + (wanted / distance) * (camera_.eye - fixed);
-    camera_.at = fixed + (wanted / distance) * (camera_.at - fixed);
+    if (parallel()) {
+        // Sideways only: parallel rays don't grow with nearness.
+        const glm::dvec3 offset = (1.0 - wanted / now) * (fixed - camera_.at);
+        camera_.eye += offset;
+        camera_.at += offset;
+        camera_.height = wanted;
+        stand_before_scene();
+        return;
+    }
+    camera_.eye = fixed + (wanted / now) * (camera_.eye - fixed);
+    camera_.at = fixed + (wanted / now) * (camera_.at - fixed);
 }
 
 void OrbitCamera::frame(const Bounds& bounds, ImageSize size) {
     if (bounds.empty() || size.rows <= 0 || size.cols <= 0) return;
-    const glm::dvec3 direction = camera_.at - camera_.eye;
     const Bounds box = with_some_size(bounds, 0.1 * pivot_distance());
-    const glm::dvec3 up = camera_frame(camera_).vy;
-    const Camera framed = frame_bounds(box, direction, up, camera_.fovy, size.aspect());
-    camera_.eye = framed.eye;
-    camera_.at = framed.at;
-    camera_.up = up;
-    camera_.near = framed.near;
+    camera_.up = camera_frame(camera_).vy;
+    camera_ = frame_bounds(box, camera_, size.aspect());
+    stand_before_scene();
 }
 
 void OrbitCamera::look_at(const glm::dvec3& point) {
     const glm::dvec3 offset = point - camera_.at;
     camera_.eye += offset;
     camera_.at += offset;
+    stand_before_scene();
 }
 
 }  // namespace raypick

@@ -6,6 +6,9 @@
 
 namespace raypick {
 
+// The directions that keys ask for, by where the eye stands.
+enum class ViewSide { front, back, right, left, top, bottom };
+
 // Looks at a pivot (the camera's `at`). The horizon stays level with respect to the axis, and the
 // view stops at the poles instead of flipping over. All in double, scene space. Until something
 // moves it, camera() is exactly the camera it was given.
@@ -19,6 +22,7 @@ public:
     [[nodiscard]] double pivot_distance() const;
 
     // Sets near from the bounds of the scene's finite objects, and the limits of zooming with it.
+    // An orthographic view that was moved stands before all of them.
     void fit_to_scene(const Bounds& bounds);
     // Turns about the pivot as if the scene were pushed by the cursor: radians to the right and
     // down.
@@ -27,6 +31,11 @@ public:
     void pan(ImageSize size, ImagePoint from, ImagePoint to);
     // Moves the pivot along the view axis to this depth in front of the eye; the view stays.
     void set_pivot_depth(double depth);
+    // Looks from one side, about the pivot and at the same distance. Where y is the axis the front
+    // is at +z and the right at +x; where z is, the front is at -y.
+    void look_from(ViewSide side);
+    // Between perspective and orthographic; what lies at the pivot keeps its size.
+    void toggle_projection();
     // Scales the distances to the point of the pivot's plane at `at` by `factor` (< 1: nearer);
     // that point stays where it is on the image.
     void zoom(ImageSize size, ImagePoint at, double factor);
@@ -36,10 +45,15 @@ public:
     void look_at(const glm::dvec3& point);
 
 private:
+    [[nodiscard]] bool parallel() const { return camera_.projection == Projection::orthographic; }
+    // Of what the image shows of the pivot's plane, scene units.
+    [[nodiscard]] double pivot_plane_height() const;
+    void stand_before_scene();
     [[nodiscard]] glm::dvec3 pivot_plane_point(ImageSize size, ImagePoint at) const;
 
     Camera camera_;
     glm::dvec3 axis_{0.0, 1.0, 0.0};
+    Bounds scene_;
     double min_distance_ = 1e-6;
     double max_distance_ = 1e12;
 };

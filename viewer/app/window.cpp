@@ -40,6 +40,8 @@ Modifiers modifiers_of(int mods) {
 
 std::optional<Key> letter_key(char letter) {
     switch (letter) {
+        case 'c':
+            return Key::c;
         case 'f':
             return Key::f;
         case 'h':
@@ -72,6 +74,19 @@ std::optional<Key> key_of(int key, int scancode) {
             return Key::f1;
         case GLFW_KEY_F12:
             return Key::f12;
+        // Digits by their place: many keyboards want Shift for those in the row.
+        case GLFW_KEY_1:
+        case GLFW_KEY_KP_1:
+            return Key::one;
+        case GLFW_KEY_3:
+        case GLFW_KEY_KP_3:
+            return Key::three;
+        case GLFW_KEY_5:
+        case GLFW_KEY_KP_5:
+            return Key::five;
+        case GLFW_KEY_7:
+        case GLFW_KEY_KP_7:
+            return Key::seven;
         default:
             break;
     }
@@ -224,6 +239,10 @@ void Window::set_title(const std::string& title) {
     if (title == title_) return;
     title_ = title;
     glfwSetWindowTitle(handle_, title_.c_str());
+}
+
+void Window::set_clipboard(const std::string& text) {
+    glfwSetClipboardString(handle_, text.c_str());
 }
 
 bool Window::close_wanted() const {

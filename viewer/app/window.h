@@ -45,6 +45,7 @@ public:
     void swap();
     void hide();
     void set_title(const std::string& title);
+    void set_clipboard(const std::string& text);
     [[nodiscard]] bool close_wanted() const;
     [[nodiscard]] WindowMetrics metrics() const;
     // The monitor's content scale in window units: what fonts and panels should be scaled by.

@@ -16,5 +16,7 @@ int run_pick(const PickCommand& command);
 int run_render(const RenderCommand& command);
 // Prints what a file holds.
 int run_info(const InfoCommand& command);
+// Writes the scene as one of our scene files.
+int run_save(const SaveCommand& command);
 
 }  // namespace raypick

@@ -21,18 +21,60 @@ Json material_json(const Material& material) {
             {"ior", shortest_decimal(material.ior)}};
 }
 
-Json light_json(const Scene& scene, const Light& light) {
-    if (const auto* point = std::get_if<PointLight>(&light)) {
-        return {{"name", point->name},
-                {"type", "point"},
-                {"position", vector_json(scene.origin + point->position)},
-                {"colour", vector_json(point->colour)}};
+Json position_json(const Scene& scene, const glm::dvec3& position) {
+    return vector_json(scene.origin + position);
+}
+
+Json attenuation_json(const Attenuation& a) {
+    return {a.constant, a.linear, a.quadratic};
+}
+
+// What lights of each kind have beside name and colour, in file coordinates.
+struct LightJson {
+    const Scene& scene;
+
+    Json operator()(const PointLight& light) const {
+        return {{"type", "point"},
+                {"position", position_json(scene, light.position)},
+                {"attenuation", attenuation_json(light.attenuation)}};
     }
-    const auto& directional = std::get<DirectionalLight>(light);
-    return {{"name", directional.name},
-            {"type", "directional"},
-            {"direction", vector_json(directional.direction)},
-            {"colour", vector_json(directional.colour)}};
+    Json operator()(const DirectionalLight& light) const {
+        return {{"type", "directional"}, {"direction", vector_json(light.direction)}};
+    }
+    Json operator()(const SpotLight& light) const {
+        return {{"type", "spot"},
+                {"position", position_json(scene, light.position)},
+                {"direction", vector_json(light.direction)},
+                {"attenuation", attenuation_json(light.attenuation)},
+                {"inner_degrees", light.inner_degrees},
+                {"outer_degrees", light.outer_degrees}};
+    }
+    Json operator()(const SphereLight& light) const {
+        return {{"type", "sphere"},
+                {"centre", position_json(scene, light.centre)},
+                {"radius", light.radius},
+                {"attenuation", attenuation_json(light.attenuation)},
+                {"samples", light.samples}};
+    }
+    Json operator()(const RectangleLight& light) const {
+        return {{"type", "rectangle"},
+                {"corner", position_json(scene, light.corner)},
+                {"edge_u", vector_json(light.edge_u)},
+                {"edge_v", vector_json(light.edge_v)},
+                {"attenuation", attenuation_json(light.attenuation)},
+                {"samples", light.samples}};
+    }
+};
+
+Json light_json(const Scene& scene, const Light& light) {
+    Json json = std::visit(LightJson{scene}, light);
+    std::visit(
+        [&json](const auto& kind) {
+            json["name"] = kind.name;
+            json["colour"] = vector_json(kind.colour);
+        },
+        light);
+    return json;
 }
 
 Json camera_json(const Scene& scene, const NamedCamera& named) {
@@ -49,17 +91,32 @@ struct ShapeName {
     const char* operator()(const Triangle&) const { return "triangle"; }
     const char* operator()(const Box&) const { return "box"; }
     const char* operator()(const MeshInstance&) const { return "mesh"; }
+    const char* operator()(const Disk&) const { return "disk"; }
+    const char* operator()(const Rectangle&) const { return "rectangle"; }
+    const char* operator()(const Cone&) const { return "cone"; }
+    const char* operator()(const Torus&) const { return "torus"; }
+    const char* operator()(const SphereSetInstance&) const { return "spheres"; }
+    const char* operator()(const ConeSetInstance&) const { return "cones"; }
 };
 
 std::string material_name(const Scene& scene, MaterialId id) {
     return id == kNoMaterial ? "" : material(scene, id).name;
 }
 
-// A shape that is no mesh, or a mesh without parts, is one part.
+std::vector<Part> stored_parts(const Scene& scene, const Shape& shape) {
+    if (const auto* mesh = std::get_if<MeshInstance>(&shape)) return scene.meshes[mesh->mesh].parts;
+    if (const auto* spheres = std::get_if<SphereSetInstance>(&shape)) {
+        return scene.sphere_sets[spheres->set].parts;
+    }
+    if (const auto* cones = std::get_if<ConeSetInstance>(&shape)) {
+        return scene.cone_sets[cones->set].parts;
+    }
+    return {};
+}
+
+// A shape that has no parts is one.
 Json parts_json(const Scene& scene, const Object& object) {
-    const auto* instance = std::get_if<MeshInstance>(&object.shape);
-    std::vector<Part> parts;
-    if (instance != nullptr) parts = scene.meshes[instance->mesh].parts;
+    std::vector<Part> parts = stored_parts(scene, object.shape);
     if (parts.empty()) parts.push_back({0, primitive_count(scene, object), kNoMaterial});
     Json json = Json::array();
     for (const Part& part : parts) {

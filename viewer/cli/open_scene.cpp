@@ -68,12 +68,14 @@ void print_report(const BuiltAccel& built) {
 }
 
 Camera camera_for(const Scene& scene, ImageSize size, const CameraOverride& wanted) {
-    const bool overridden = wanted.eye || wanted.at || wanted.up || wanted.fovy;
+    const bool overridden =
+        wanted.eye || wanted.at || wanted.up || wanted.fovy || wanted.projection || wanted.height;
     if (!overridden) return choose_camera(scene, size, wanted);
     try {
         return choose_camera(scene, size, wanted);
     } catch (const Error& error) {
-        throw UsageError(fmt::format("--eye, --look-at, --up, --fovy: {}", error.what()));
+        throw UsageError(
+            fmt::format("--eye, --look-at, --up, --fovy, --orthographic: {}", error.what()));
     }
 }
 

@@ -67,7 +67,12 @@ struct InfoCommand {
     bool objects = false;
 };
 
-using Command = std::variant<ViewCommand, PickCommand, RenderCommand, InfoCommand>;
+struct SaveCommand {
+    SceneOptions scene;
+    std::filesystem::path output;  // ends in .json
+};
+
+using Command = std::variant<ViewCommand, PickCommand, RenderCommand, InfoCommand, SaveCommand>;
 
 // Understands the words after the program's name. Nothing if they asked for help or the version,
 // which then stands on standard output. Throws UsageError that names the option.

@@ -13,8 +13,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
+#include <vector>
 
 namespace raypick {
 namespace {
@@ -23,7 +25,8 @@ using Clock = std::chrono::steady_clock;
 
 struct Frame {
     Image image;
-    RayCounts rays;              // none if drawn by OpenGL
+    RayCounts rays;  // none if drawn by OpenGL
+    std::uint64_t nan_pixels = 0;
     double build_seconds = 0.0;  // of the tree that rays run on
     double seconds = 0.0;        // of the frame
     std::uint64_t accel_bytes = 0;
@@ -47,8 +50,8 @@ Frame traced(const RenderCommand& command, const OpenedScene& opened, const Came
     const BuiltAccel built = build_timed(opened, command.settings.threads, interrupt.token());
     bar.clear();
     if (command.scene.verbose) print_report(built);
-    constexpr bool kCoarseFirst = false;  // nobody looks at it before it is done
-    RenderJob job(built.accel, camera, command.size, command.settings, kCoarseFirst);
+    constexpr bool kProgressive = false;  // nobody looks at it before it is done
+    RenderJob job(built.accel, camera, command.size, command.settings, kProgressive);
     const std::stop_callback cancel(interrupt.token(), [&job] { job.cancel(); });
     if (bar.visible()) show_progress(job, bar);
     job.wait();
@@ -60,6 +63,7 @@ Frame traced(const RenderCommand& command, const OpenedScene& opened, const Came
     frame.image = std::move(snapshot.image);
     const RenderProgress progress = job.progress();
     frame.rays = progress.rays;
+    frame.nan_pixels = progress.nan_pixels;
     frame.build_seconds = built.build_seconds;
     frame.seconds = progress.seconds;
     frame.accel_bytes = built.accel->stats().bytes;
@@ -72,6 +76,8 @@ Frame rasterized(const RenderCommand& command, const OpenedScene& opened, const 
     const auto start = Clock::now();
     Rasterizer rasterizer;
     rasterizer.set_scene(opened.scene);
+    for (const std::string& warning : rasterizer.warnings())
+        print_message("warning: " + warning);
     rasterizer.draw(camera, command.size);
     Frame frame;
     frame.image = rasterizer.read_image();
@@ -85,18 +91,33 @@ std::uint64_t image_bytes(const Image& image) {
            bytes(image.primitive);
 }
 
+// Counts by the depth of the ray, beginning with the eye's rays at depth 1, down to what the
+// settings allow.
+Json rays_json(const RayCounts& rays, int depth) {
+    const auto deepest = static_cast<std::ptrdiff_t>(std::min(depth, kMaxDepth));
+    const auto by_depth = [&](const auto& counts) {
+        return Json(std::vector<std::uint64_t>(counts.begin() + 1, counts.begin() + 1 + deepest));
+    };
+    return {{"eye", rays.eye},
+            {"eye_hits", rays.eye_hits},
+            {"reflection", rays.reflection},
+            {"refraction", rays.refraction},
+            {"shadow", rays.shadow},
+            {"shadow_blocked", rays.shadow_blocked},
+            {"by_depth",
+             {{"reflection", by_depth(rays.reflection_at)},
+              {"refraction", by_depth(rays.refraction_at)},
+              {"shadow", by_depth(rays.shadow_at)}}}};
+}
+
 Json stats_json(const RenderCommand& command, const OpenedScene& opened, const Frame& frame) {
     Json json;
     json["seconds"] = {{"load", opened.load_seconds},
                        {"build", frame.build_seconds},
                        {"trace", command.raster ? 0.0 : frame.seconds},
                        {"raster", command.raster ? frame.seconds : 0.0}};
-    json["rays"] = {{"eye", frame.rays.eye},
-                    {"eye_hits", frame.rays.eye_hits},
-                    {"reflection", frame.rays.reflection},
-                    {"refraction", frame.rays.refraction},
-                    {"shadow", frame.rays.shadow},
-                    {"shadow_blocked", frame.rays.shadow_blocked}};
+    json["rays"] = rays_json(frame.rays, command.settings.depth);
+    json["nan_pixels"] = frame.nan_pixels;
     add_counts(json, *opened.scene);
     json["memory_bytes"] = {{"meshes", mesh_bytes(*opened.scene)},
                             {"accel", frame.accel_bytes},
@@ -124,6 +145,10 @@ void render_to(const RenderOutput& output, const RenderCommand& command,
     bar.clear();
     interrupt.check();
     output.write(frame.image);
+    if (frame.nan_pixels > 0) {
+        print_message(fmt::format("warning: {} pixels came out as no number and are black",
+                                  frame.nan_pixels));
+    }
     if (command.scene.verbose) {
         print_message(
             fmt::format("wrote {} after {:.3f} s for the frame", command.output, frame.seconds));

@@ -25,6 +25,7 @@ int run(const Command& command) {
         int operator()(const PickCommand& c) const { return run_pick(c); }
         int operator()(const RenderCommand& c) const { return run_render(c); }
         int operator()(const InfoCommand& c) const { return run_info(c); }
+        int operator()(const SaveCommand& c) const { return run_save(c); }
     };
     return std::visit(Runner{}, command);
 }

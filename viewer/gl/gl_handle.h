@@ -55,7 +55,7 @@ struct ProgramKind {
 };
 
 using Buffer = GlHandle<BufferKind>;
-using Texture = GlHandle<TextureKind>;
+using GlTexture = GlHandle<TextureKind>;
 using Renderbuffer = GlHandle<RenderbufferKind>;
 using Framebuffer = GlHandle<FramebufferKind>;
 using VertexArray = GlHandle<VertexArrayKind>;
@@ -68,10 +68,10 @@ inline Buffer new_buffer() {
     glGenBuffers(1, &name);
     return Buffer(name);
 }
-inline Texture new_texture() {
+inline GlTexture new_texture() {
     GLuint name = 0;
     glGenTextures(1, &name);
-    return Texture(name);
+    return GlTexture(name);
 }
 inline Renderbuffer new_renderbuffer() {
     GLuint name = 0;

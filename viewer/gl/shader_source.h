@@ -11,7 +11,7 @@
 namespace raypick {
 
 struct EmbeddedShader {
-    std::string_view name;  // file name in shaders/, e.g. "phong.glsl"
+    std::string_view name;  // file name in shaders/, e.g. "local_light.glsl"
     std::string_view text;
 };
 

@@ -9,8 +9,8 @@
 
 namespace raypick {
 
-Texture make_texture(TexelFormat format, ImageSize size, const void* texels) {
-    Texture texture = new_texture();
+GlTexture make_texture(TexelFormat format, ImageSize size, const void* texels) {
+    GlTexture texture = new_texture();
     glBindTexture(GL_TEXTURE_2D, texture.name());
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);

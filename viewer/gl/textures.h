@@ -15,13 +15,14 @@ struct TexelFormat {
     GLenum type;      // GL_FLOAT
 };
 inline constexpr TexelFormat kRgba32f{GL_RGBA32F, GL_RGBA, GL_FLOAT};
+inline constexpr TexelFormat kRg32f{GL_RG32F, GL_RG, GL_FLOAT};
 inline constexpr TexelFormat kRgb32f{GL_RGB32F, GL_RGB, GL_FLOAT};
 inline constexpr TexelFormat kR32ui{GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT};
 inline constexpr TexelFormat kDepth32fStencil8{GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL,
                                                GL_FLOAT_32_UNSIGNED_INT_24_8_REV};
 
 // An unfiltered 2D texture without mipmaps, bottom row first; `texels` may be null.
-Texture make_texture(TexelFormat format, ImageSize size, const void* texels = nullptr);
+GlTexture make_texture(TexelFormat format, ImageSize size, const void* texels = nullptr);
 
 // A framebuffer that draws to `colours` (in this order) and, unless 0, to a depth and stencil
 // texture. Throws Error if OpenGL refuses the combination. Leaves it bound.
@@ -40,7 +41,7 @@ public:
 
 private:
     Buffer buffer_;
-    Texture texture_;
+    GlTexture texture_;
 };
 
 // Restores the framebuffer bindings that were there before.

@@ -9,19 +9,25 @@ namespace raypick {
 // Bottom row first. Cleared to background by clear().
 struct FrameBuffers {
     FrameBuffers() = default;
-    // Throws Error if OpenGL can't draw images of this size.
-    explicit FrameBuffers(ImageSize image_size);
+    // With `textured`, also what texture look-ups need. Throws Error if OpenGL can't draw images of
+    // this size.
+    FrameBuffers(ImageSize image_size, bool textured);
 
     // Makes every pixel background, ready for the passes. Leaves `surface` bound.
     void clear() const;
 
     ImageSize size;
-    Texture normal_t;   // normal towards the eye, 0 on background; t
-    Texture object;     // id
-    Texture primitive;  // 0xffffffff on background
-    Texture material;
-    Texture depth_stencil;
-    Texture colour_t;     // linear RGB; t
+    bool textured = false;
+    GlTexture normal_t;   // normal towards the eye, 0 on background; t
+    GlTexture object;     // id
+    GlTexture primitive;  // 0xffffffff on background
+    GlTexture material;
+    // Of a textured frame, undefined where the material isn't textured: the surface's uv, and what
+    // the pixel covers of it (Footprint: major, minor).
+    GlTexture uv;
+    GlTexture footprint;
+    GlTexture depth_stencil;
+    GlTexture colour_t;   // linear RGB; t
     Framebuffer depth;    // first pass: depth alone
     Framebuffer surface;  // second pass: all of the above but colour
     Framebuffer colour;   // third pass

@@ -19,19 +19,25 @@ bool same_part(const Part& a, const Part& b) {
     return a.first == b.first && a.count == b.count && a.material == b.material;
 }
 
-// Four floats a vector: three-component buffer textures came with OpenGL 4.0 only.
-std::vector<glm::vec4> padded(std::span<const glm::vec3> vectors, const MeshChunk& chunk) {
-    std::vector<glm::vec4> result;
+// A texel for each vertex of the chunk, made from the mesh's `values` by `texel`.
+template <typename Value, typename TexelOf>
+auto chunk_texels(std::span<const Value> values, const MeshChunk& chunk, const TexelOf& texel) {
+    std::vector<decltype(texel(values[0]))> result;
     if (chunk.vertices.empty()) {
-        result.reserve(vectors.size());
-        for (const glm::vec3& v : vectors)
-            result.emplace_back(v, 0.0f);
+        result.reserve(values.size());
+        for (const Value& value : values)
+            result.push_back(texel(value));
     } else {
         result.reserve(chunk.vertices.size());
         for (const std::uint32_t vertex : chunk.vertices)
-            result.emplace_back(vectors[vertex], 0.0f);
+            result.push_back(texel(values[vertex]));
     }
     return result;
+}
+
+// Four floats a vector: three-component buffer textures came with OpenGL 4.0 only.
+std::vector<glm::vec4> padded(std::span<const glm::vec3> vectors, const MeshChunk& chunk) {
+    return chunk_texels(vectors, chunk, [](const glm::vec3& v) { return glm::vec4(v, 0.0f); });
 }
 
 // Three vertices and the material, for each triangle of the chunk.
@@ -69,6 +75,11 @@ GpuMesh::Chunk upload_chunk(const Mesh& mesh, const MeshChunk& run) {
     if (chunk.has_normals) {
         chunk.normals = upload(GL_RGBA32F, padded(mesh.normals, run), "normals");
     }
+    chunk.has_uvs = !mesh.uvs.empty();
+    if (chunk.has_uvs) {
+        const auto uvs = chunk_texels(mesh.uvs, run, [](const glm::vec2& uv) { return uv; });
+        chunk.uvs = upload(GL_RG32F, uvs, "texture coordinates");
+    }
     return chunk;
 }
 
@@ -86,7 +97,7 @@ GpuMesh::GpuMesh(const Mesh& mesh, std::size_t max_texels) : mesh_(mesh) {
 
 bool GpuMesh::holds(const Mesh& mesh) const {
     return same_array(mesh_.positions, mesh.positions) && same_array(mesh_.normals, mesh.normals) &&
-           same_array(mesh_.triangles, mesh.triangles) &&
+           same_array(mesh_.uvs, mesh.uvs) && same_array(mesh_.triangles, mesh.triangles) &&
            std::equal(mesh_.parts.begin(), mesh_.parts.end(), mesh.parts.begin(), mesh.parts.end(),
                       same_part);
 }

@@ -28,7 +28,9 @@ public:
         BufferTexture triangles;
         BufferTexture positions;
         BufferTexture normals;
+        BufferTexture uvs;
         bool has_normals = false;
+        bool has_uvs = false;
     };
     [[nodiscard]] const std::vector<Chunk>& chunks() const { return chunks_; }
 

@@ -3,27 +3,11 @@
 #include "tracer/error.h"
 #include "viewer/gl/load_gl.h"
 
-#include <glm/geometric.hpp>
-
 #include <algorithm>
 
 namespace raypick {
 
 namespace {
-
-BufferTexture upload_materials(const Scene& scene) {
-    std::vector<glm::vec4> texels;
-    const auto add = [&texels](const Material& m) {
-        texels.emplace_back(m.ambient, m.shininess);
-        texels.emplace_back(m.diffuse, 0.0f);
-        texels.emplace_back(m.specular, 0.0f);
-        texels.emplace_back(m.emissive, 0.0f);
-    };
-    for (const Material& m : scene.materials)
-        add(m);
-    add(material(scene, kNoMaterial));
-    return {GL_RGBA32F, sizeof(glm::vec4), std::as_bytes(std::span(texels)), "materials"};
-}
 
 // Each mesh of the scene, taken over from `before` where it is there.
 std::vector<std::shared_ptr<const GpuMesh>> upload_meshes(const Scene& scene,
@@ -40,11 +24,20 @@ std::vector<std::shared_ptr<const GpuMesh>> upload_meshes(const Scene& scene,
     return meshes;
 }
 
+bool is_textured(const GpuScene& gpu, const Object& object) {
+    if (object.material != kNoMaterial) return gpu.materials.is_textured(object.material);
+    const std::span<const Part> parts = parts_of(*gpu.scene, object.shape);
+    return std::any_of(parts.begin(), parts.end(), [&gpu](const Part& part) {
+        return gpu.materials.is_textured(part.material);
+    });
+}
+
 // Corners relative to the first one, which keeps them exact far from the origin.
 std::shared_ptr<const GpuMesh> upload_triangle(const Triangle& triangle) {
     MeshData data;
     data.positions = {glm::vec3(0.0f), glm::vec3(triangle.b - triangle.a),
                       glm::vec3(triangle.c - triangle.a)};
+    data.uvs = {glm::vec2(0.0f), glm::vec2(1.0f, 0.0f), glm::vec2(0.0f, 1.0f)};  // barycentric
     data.triangles = {glm::uvec3(0, 1, 2)};
     return std::make_shared<GpuMesh>(make_mesh("triangle", std::move(data)), max_buffer_texels());
 }
@@ -71,8 +64,10 @@ struct ShapeDrawing {
     void operator()(const Plane& plane) const { drawn.shape = plane; }
     template <typename FiniteShape>
     void operator()(const FiniteShape& shape) const {
-        drawn.shape = shape;
-        drawn.bounds = object_bounds(scene, object);
+        if constexpr (std::is_constructible_v<DrawnShape, FiniteShape>) {
+            drawn.shape = shape;
+            drawn.bounds = object_bounds(scene, object);
+        }
     }
 };
 
@@ -83,6 +78,8 @@ DrawnObject drawn_object(const GpuScene& gpu, const Object& object) {
     drawn.id = object.id;
     drawn.mask = object.mask;
     drawn.material = object.material;
+    drawn.sides = object.sides;
+    drawn.textured = is_textured(gpu, object);
     drawn.scene_from_object = object.world_from_object;
     drawn.object_from_scene = *object_from_scene;
     std::visit(ShapeDrawing{*gpu.scene, object, gpu, drawn}, object.shape);
@@ -95,30 +92,16 @@ GpuScene upload_scene(std::shared_ptr<const Scene> scene, const GpuScene& before
     GpuScene gpu;
     gpu.scene = std::move(scene);
     gpu.meshes = upload_meshes(*gpu.scene, before);
+    gpu.materials = upload_materials(*gpu.scene);
     for (const Object& object : gpu.scene->objects) {
         const auto* instance = std::get_if<MeshInstance>(&object.shape);
         if (instance != nullptr && gpu.meshes[instance->mesh]->chunks().empty()) continue;
-        gpu.objects.push_back(drawn_object(gpu, object));
+        const bool drawable = object.shape.index() <= 4;  // TODO(raster)
+        if (drawable) gpu.objects.push_back(drawn_object(gpu, object));
     }
-    gpu.materials = upload_materials(*gpu.scene);
+    gpu.textures = upload_textures(*gpu.scene, before.textures);
+    gpu.sky = upload_sky(gpu.scene->environment, before.sky);
     check_gl("uploading the scene");
-    return gpu;
-}
-
-GpuLights upload_lights(const std::vector<Light>& lights, const glm::dvec3& eye) {
-    std::vector<glm::vec4> texels;
-    for (const Light& light : lights) {
-        if (const auto* point = std::get_if<PointLight>(&light)) {
-            texels.emplace_back(glm::vec3(point->position - eye), 1.0f);
-            texels.emplace_back(point->colour, 0.0f);
-        } else if (const auto* sun = std::get_if<DirectionalLight>(&light)) {
-            texels.emplace_back(glm::vec3(-glm::normalize(sun->direction)), 0.0f);
-            texels.emplace_back(sun->colour, 0.0f);
-        }
-    }
-    GpuLights gpu;
-    gpu.count = static_cast<int>(lights.size());
-    gpu.texels = {GL_RGBA32F, sizeof(glm::vec4), std::as_bytes(std::span(texels)), "lights"};
     return gpu;
 }
 

@@ -2,7 +2,10 @@
 #pragma once
 
 #include "tracer/scene/scene.h"
+#include "viewer/raster/gpu_materials.h"
 #include "viewer/raster/gpu_mesh.h"
+#include "viewer/raster/gpu_sky.h"
+#include "viewer/raster/gpu_textures.h"
 #include "viewer/raster/view_numbers.h"
 
 #include <memory>
@@ -18,6 +21,8 @@ struct DrawnObject {
     ObjectId id = kNoObject;
     std::uint32_t mask = 0;
     MaterialId material = kNoMaterial;
+    Sides sides = Sides::both;
+    bool textured = false;  // its look or its holes depend on texture coordinates
     DrawnShape shape;
     Transform scene_from_object;
     Transform object_from_scene;
@@ -28,19 +33,13 @@ struct GpuScene {
     std::shared_ptr<const Scene> scene;
     std::vector<std::shared_ptr<const GpuMesh>> meshes;  // as in the scene; null: not drawn
     std::vector<DrawnObject> objects;                    // ids ascending
-    BufferTexture materials;                             // four texels each, the default last
+    GpuMaterials materials;
+    std::shared_ptr<const GpuTextures> textures;
+    std::shared_ptr<const GpuSky> sky;
 };
 
 // Meshes that `before` has on the GPU already stay there. Throws Error if an object's transform is
 // singular or the GPU has no room.
 GpuScene upload_scene(std::shared_ptr<const Scene> scene, const GpuScene& before);
-
-// The lights of a view, two texels each: place relative to `eye` and 1 for a point, unit direction
-// to the light and 0 for a directional light; then the colour.
-struct GpuLights {
-    BufferTexture texels;
-    int count = 0;
-};
-GpuLights upload_lights(const std::vector<Light>& lights, const glm::dvec3& eye);
 
 }  // namespace raypick

@@ -56,8 +56,8 @@ void set_state() {
 struct Presenter::State {
     Program program = make_program("fullscreen.vert", "present.frag");
     VertexArray no_vertices = new_vertex_array();
-    Texture colour;
-    Texture object;
+    GlTexture colour;
+    GlTexture object;
 };
 
 Presenter::Presenter() : state_(std::make_unique<State>()) {

@@ -3,7 +3,9 @@
 #include "tracer/error.h"
 #include "viewer/gl/gl_row.h"
 #include "viewer/gl/load_gl.h"
+#include "viewer/raster/draw_objects.h"
 #include "viewer/raster/frame_buffers.h"
+#include "viewer/raster/gpu_lights.h"
 #include "viewer/raster/gpu_scene.h"
 #include "viewer/raster/shader_set.h"
 #include "viewer/raster/view_numbers.h"
@@ -15,79 +17,6 @@
 namespace raypick {
 
 namespace {
-
-void bind(Unit unit, GLenum target, GLuint texture) {
-    bind_texture(static_cast<GLuint>(unit), target, texture);
-}
-
-// Draws one object with the program in `uniforms`, which is current.
-struct ShapeDraw {
-    const ViewNumbers& view;
-    const DrawnObject& object;
-    const Uniforms& uniforms;
-
-    void operator()(const std::shared_ptr<const GpuMesh>& mesh) const {
-        const MeshNumbers numbers =
-            mesh_numbers(view, object.scene_from_object, object.object_from_scene);
-        uniforms.set("clip_from_object", numbers.clip_from_object);
-        uniforms.set("object_from_scene", numbers.object_from_scene);
-        uniforms.set("eye_high", numbers.eye_high);
-        uniforms.set("eye_low", numbers.eye_low);
-        for (const GpuMesh::Chunk& chunk : mesh->chunks()) {
-            uniforms.set("first_primitive", static_cast<int>(chunk.first));
-            uniforms.set("has_normals", static_cast<int>(chunk.has_normals));
-            bind(Unit::triangles, GL_TEXTURE_BUFFER, chunk.triangles.texture());
-            bind(Unit::positions, GL_TEXTURE_BUFFER, chunk.positions.texture());
-            bind(Unit::normals, GL_TEXTURE_BUFFER, chunk.normals.texture());
-            glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * chunk.count));
-        }
-    }
-
-    void operator()(const Sphere& sphere) const {
-        const SphereNumbers numbers = sphere_numbers(view, sphere, object.object_from_scene);
-        uniforms.set("object_from_scene", numbers.object_from_scene);
-        uniforms.set("sphere_eye", numbers.eye);
-        uniforms.set("sphere_eye_power", numbers.eye_power);
-        draw_proxy();
-    }
-
-    void operator()(const Box& box) const {
-        const BoxNumbers numbers = box_numbers(view, box, object.object_from_scene);
-        uniforms.set("object_from_scene", numbers.object_from_scene);
-        uniforms.set("box_min", numbers.min);
-        uniforms.set("box_max", numbers.max);
-        draw_proxy();
-    }
-
-    void operator()(const Plane& plane) const {
-        const PlaneNumbers numbers = plane_numbers(view, plane, object.object_from_scene);
-        uniforms.set("plane_normal", numbers.normal);
-        uniforms.set("plane_height", numbers.height);
-        glDrawArrays(GL_TRIANGLES, 0, 3);
-    }
-
-private:
-    // Back faces only: one fragment a pixel, also with the eye inside.
-    void draw_proxy() const {
-        const ProxyNumbers proxy = proxy_numbers(view, object.bounds);
-        uniforms.set("clip_from_scene", glm::mat3(view.clip_from_scene));
-        uniforms.set("proxy_min", proxy.min);
-        uniforms.set("proxy_max", proxy.max);
-        glEnable(GL_CULL_FACE);
-        glDrawArrays(GL_TRIANGLES, 0, 36);
-        glDisable(GL_CULL_FACE);
-    }
-};
-
-void draw_objects(const std::array<Program, kShapeKinds>& programs, const ViewNumbers& view,
-                  std::span<const DrawnObject* const> objects) {
-    for (const DrawnObject* object : objects) {
-        const Uniforms uniforms(programs[object->shape.index()]);
-        uniforms.set("object_id", object->id);
-        uniforms.set("object_material", object->material);
-        std::visit(ShapeDraw{view, *object, uniforms}, object->shape);
-    }
-}
 
 // What every pass wants; others (the UI) may have left something else.
 void set_state() {
@@ -118,7 +47,7 @@ std::vector<T> read_texture(GLuint texture, ImageSize size, GLenum format, GLenu
 }  // namespace
 
 struct Rasterizer::State {
-    ShaderSet shaders = make_shader_set();
+    ShaderSet shaders;
     ShaderWatch watch;
     Buffer view_block = new_buffer();
     VertexArray no_vertices = new_vertex_array();
@@ -126,32 +55,32 @@ struct Rasterizer::State {
     FrameBuffers frame;
 
     void reload_changed_shaders();
-    void depth_pass(const ViewNumbers& view, std::span<const DrawnObject* const> objects) const;
+    void depth_pass(const ViewNumbers& view, std::span<const DrawnObject* const> objects);
     void surface_pass(const ViewNumbers& view, std::span<const DrawnObject* const> objects,
-                      TieRule ties) const;
-    void shade_pass(const Camera& camera, const ViewNumbers& view) const;
+                      TieRule ties);
+    void shade_pass(const Camera& camera, const ViewNumbers& view);
+    void bind_materials() const;
 };
 
 void Rasterizer::State::reload_changed_shaders() {
     if (!watch.changed()) return;
     try {
-        shaders = make_shader_set();
+        shaders = shaders.again();
     } catch (const Error& error) {
         fmt::print(stderr, "raypick: {}\n", error.what());  // the developer's; the old ones stay
     }
 }
 
 void Rasterizer::State::depth_pass(const ViewNumbers& view,
-                                   std::span<const DrawnObject* const> objects) const {
+                                   std::span<const DrawnObject* const> objects) {
     glBindFramebuffer(GL_FRAMEBUFFER, frame.depth.name());
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
-    draw_objects(shaders.depth, view, objects);
+    draw_objects(shaders, Pass::depth, view, objects, scene.materials.count());
 }
 
 void Rasterizer::State::surface_pass(const ViewNumbers& view,
-                                     std::span<const DrawnObject* const> objects,
-                                     TieRule ties) const {
+                                     std::span<const DrawnObject* const> objects, TieRule ties) {
     glBindFramebuffer(GL_FRAMEBUFFER, frame.surface.name());
     glEnable(GL_DEPTH_TEST);
     if (ties == TieRule::kept) {
@@ -164,24 +93,36 @@ void Rasterizer::State::surface_pass(const ViewNumbers& view,
     } else {
         glDepthFunc(GL_LESS);
     }
-    draw_objects(shaders.surface, view, objects);
+    draw_objects(shaders, Pass::surface, view, objects, scene.materials.count());
     glDisable(GL_STENCIL_TEST);
     glDisable(GL_DEPTH_TEST);
     glDepthMask(GL_TRUE);
 }
 
-void Rasterizer::State::shade_pass(const Camera& camera, const ViewNumbers& view) const {
+// What every pass of a textured scene reads.
+void Rasterizer::State::bind_materials() const {
+    bind(Unit::materials, GL_TEXTURE_BUFFER, scene.materials.materials.texture());
+    bind(Unit::maps, GL_TEXTURE_BUFFER, scene.materials.maps.texture());
+    bind(Unit::texture_table, GL_TEXTURE_BUFFER, scene.textures->table.texture());
+    bind(Unit::texels, GL_TEXTURE_BUFFER, scene.textures->texels.texture());
+}
+
+void Rasterizer::State::shade_pass(const Camera& camera, const ViewNumbers& view) {
     const GpuLights lights = upload_lights(effective_lights(*scene.scene, camera), view.eye);
     glBindFramebuffer(GL_FRAMEBUFFER, frame.colour.name());
     bind(Unit::normal_t, GL_TEXTURE_2D, frame.normal_t.name());
     bind(Unit::material, GL_TEXTURE_2D, frame.material.name());
-    bind(Unit::materials, GL_TEXTURE_BUFFER, scene.materials.texture());
+    if (frame.textured) {
+        bind(Unit::uv, GL_TEXTURE_2D, frame.uv.name());
+        bind(Unit::footprint, GL_TEXTURE_2D, frame.footprint.name());
+    }
     bind(Unit::lights, GL_TEXTURE_BUFFER, lights.texels.texture());
-    const Uniforms uniforms(shaders.shade);
-    uniforms.set("material_count", static_cast<int>(scene.scene->materials.size()));
+    bind(Unit::sky_texels, GL_TEXTURE_BUFFER, scene.sky->texels.texture());
+    const Uniforms uniforms(shaders.shade(frame.textured));
+    uniforms.set("material_count", scene.materials.count());
     uniforms.set("light_count", lights.count);
     uniforms.set("ambient", scene.scene->ambient);
-    uniforms.set("background", scene.scene->background);
+    set_sky(uniforms, *scene.scene, *scene.sky);
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
@@ -193,11 +134,24 @@ void Rasterizer::set_scene(std::shared_ptr<const Scene> scene) {
     state_->scene = upload_scene(std::move(scene), state_->scene);
 }
 
+std::vector<std::string> Rasterizer::warnings() const {
+    std::vector<std::string> warnings;
+    if (state_->scene.scene == nullptr) return warnings;
+    for (const std::string& warning :
+         {state_->scene.textures->warning, state_->scene.sky->warning}) {
+        if (!warning.empty()) warnings.push_back(warning);
+    }
+    return warnings;
+}
+
 void Rasterizer::draw(const Camera& camera, ImageSize size, std::uint32_t mask, TieRule ties) {
     if (state_->scene.scene == nullptr) throw Error("there is no scene to draw");
     const KeepFramebuffer keep;
     state_->reload_changed_shaders();
-    if (state_->frame.size != size) state_->frame = FrameBuffers(size);
+    const bool textured = state_->scene.materials.any_textured();
+    if (state_->frame.size != size || state_->frame.textured != textured) {
+        state_->frame = FrameBuffers(size, textured);
+    }
     set_state();
     const ViewNumbers view = view_numbers(camera, size);
     glBindBuffer(GL_UNIFORM_BUFFER, state_->view_block.name());
@@ -212,6 +166,7 @@ void Rasterizer::draw(const Camera& camera, ImageSize size, std::uint32_t mask, 
     glViewport(0, 0, size.cols, size.rows);
     glBindVertexArray(state_->no_vertices.name());
     state_->frame.clear();
+    state_->bind_materials();
     if (ties == TieRule::kept) state_->depth_pass(view, objects);
     state_->surface_pass(view, objects, ties);
     state_->shade_pass(camera, view);

@@ -7,6 +7,8 @@
 #include "tracer/scene/scene.h"
 
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace raypick {
 
@@ -26,6 +28,8 @@ public:
 
     // Uploads a scene. Meshes whose arrays are on the GPU already stay there.
     void set_scene(std::shared_ptr<const Scene> scene);
+    // What of the scene is shown coarser than it is, because this OpenGL can't hold all of it.
+    [[nodiscard]] std::vector<std::string> warnings() const;
 
     // Draws a frame of the scene into this object's own buffers. Only objects with
     // (object.mask & mask) != 0 are drawn. camera.near clips; far is infinite.

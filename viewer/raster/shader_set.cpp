@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 #include <system_error>
+#include <vector>
 
 namespace raypick {
 
@@ -21,10 +22,17 @@ void bind_inputs(const Program& program) {
     set_unit(uniforms, "triangles", Unit::triangles);
     set_unit(uniforms, "positions", Unit::positions);
     set_unit(uniforms, "normals", Unit::normals);
+    set_unit(uniforms, "uvs", Unit::uvs);
     set_unit(uniforms, "normal_t", Unit::normal_t);
     set_unit(uniforms, "material", Unit::material);
     set_unit(uniforms, "materials", Unit::materials);
     set_unit(uniforms, "lights", Unit::lights);
+    set_unit(uniforms, "maps", Unit::maps);
+    set_unit(uniforms, "texture_table", Unit::texture_table);
+    set_unit(uniforms, "texels", Unit::texels);
+    set_unit(uniforms, "uv", Unit::uv);
+    set_unit(uniforms, "footprint_axes", Unit::footprint);
+    set_unit(uniforms, "sky_texels", Unit::sky_texels);
 }
 
 struct ShapeShader {
@@ -36,24 +44,52 @@ constexpr ShapeShader kShapes[kShapeKinds] = {{"mesh.vert", "SHAPE_MESH"},
                                               {"proxy.vert", "SHAPE_BOX"},
                                               {"fullscreen.vert", "SHAPE_PLANE"}};
 
-Program shape_program(const ShapeShader& shape, const char* fragment_file) {
-    const std::string defines[] = {shape.define};
+Program shape_program(const ShapeShader& shape, const char* fragment_file, bool textured) {
+    std::vector<std::string> defines = {shape.define};
+    if (textured) defines.emplace_back("TEXTURED");
     Program program = make_program(shape.vertex_file, fragment_file, defines);
     bind_inputs(program);
     return program;
 }
 
+Program shade_program(bool textured) {
+    std::vector<std::string> defines;
+    if (textured) defines.emplace_back("TEXTURED");
+    Program program = make_program("fullscreen.vert", "shade.frag", defines);
+    bind_inputs(program);
+    return program;
+}
+
+constexpr const char* kFragmentFiles[] = {"depth.frag", "surface.frag"};  // by Pass
+
 }  // namespace
 
-ShaderSet make_shader_set() {
-    ShaderSet set;
-    for (std::size_t i = 0; i < kShapeKinds; ++i) {
-        set.depth[i] = shape_program(kShapes[i], "depth.frag");
-        set.surface[i] = shape_program(kShapes[i], "surface.frag");
+ShaderSet::ShaderSet() {
+    shade(false);
+}
+
+const Program& ShaderSet::shape(Pass pass, std::size_t kind, bool textured) {
+    const auto file = static_cast<std::size_t>(pass);
+    Program& program = shapes_[kind][2 * file + (textured ? 1 : 0)];
+    if (!program) program = shape_program(kShapes[kind], kFragmentFiles[file], textured);
+    return program;
+}
+
+const Program& ShaderSet::shade(bool textured) {
+    Program& program = shade_[textured ? 1 : 0];
+    if (!program) program = shade_program(textured);
+    return program;
+}
+
+ShaderSet ShaderSet::again() const {
+    ShaderSet fresh;
+    if (shade_[1]) fresh.shade(true);
+    for (std::size_t kind = 0; kind < kShapeKinds; ++kind) {
+        for (std::size_t i = 0; i < kVariants; ++i) {
+            if (shapes_[kind][i]) fresh.shape(static_cast<Pass>(i / 2), kind, i % 2 != 0);
+        }
     }
-    set.shade = make_program("fullscreen.vert", "shade.frag");
-    bind_inputs(set.shade);
-    return set;
+    return fresh;
 }
 
 ShaderWatch::ShaderWatch() : folder_(shader_folder()), seen_(newest()) {}

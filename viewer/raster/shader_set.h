@@ -12,18 +12,48 @@ namespace raypick {
 // In the order of DrawnShape's alternatives.
 inline constexpr std::size_t kShapeKinds = 4;
 
-struct ShaderSet {
-    std::array<Program, kShapeKinds> depth;    // first pass
-    std::array<Program, kShapeKinds> surface;  // second pass
-    Program shade;                             // third pass
+// Which pass a shape's program is for.
+enum class Pass : std::size_t { depth, surface };
+
+// Programs of the first two passes are compiled when they are first asked for: scenes need few.
+class ShaderSet {
+public:
+    // Throws Error with the compiler's message, as shape() does.
+    ShaderSet();
+
+    // `kind` is the index of the DrawnShape; `textured` programs compute texture coordinates.
+    const Program& shape(Pass pass, std::size_t kind, bool textured);
+    // The third pass; `textured` for a frame that has texture coordinates.
+    const Program& shade(bool textured);
+
+    // The same programs, compiled again.
+    [[nodiscard]] ShaderSet again() const;
+
+private:
+    static constexpr std::size_t kVariants = 4;  // two passes, plain and textured
+
+    std::array<std::array<Program, kVariants>, kShapeKinds> shapes_;  // 0: not asked for yet
+    std::array<Program, 2> shade_;                                    // plain and textured
 };
 
 // Texture units and uniform buffer binding points of these programs.
-enum class Unit : GLuint { triangles, positions, normals, normal_t, material, materials, lights };
+enum class Unit : GLuint {
+    triangles,
+    positions,
+    normals,
+    uvs,
+    normal_t,
+    material,
+    materials,
+    lights,
+    maps,
+    texture_table,
+    texels,
+    uv,
+    footprint,
+    sky_texels
+};
 inline constexpr GLuint kViewBinding = 0;
-
-// Throws Error with the compiler's message.
-ShaderSet make_shader_set();
 
 // Sees when files of the folder in RAYPICK_SHADER_DIR change.
 class ShaderWatch {

@@ -21,10 +21,13 @@ struct ViewBlock {
 
 // A camera at work on an image.
 struct ViewNumbers {
-    glm::dvec3 eye{0.0};         // the origin of every ray: the camera's eye as a float
+    // Where coordinates are relative to: the origin of every perspective ray, which is the camera's
+    // eye as a float; the camera's eye itself in an orthographic view.
+    glm::dvec3 eye{0.0};
     glm::dmat3 clip_from_scene;  // of vectors from the eye: clip x, clip y, distance along the view
     double near = 0.0;
-    double pixel_angle = 0.0;  // height of a pixel at distance 1
+    bool orthographic = false;
+    double pixel_height = 0.0;  // at distance 1; of an orthographic view everywhere
     ViewBlock block;
 };
 ViewNumbers view_numbers(const Camera& camera, ImageSize size);
@@ -35,7 +38,7 @@ bool may_be_seen(const ViewNumbers& view, const Bounds& bounds);
 
 struct MeshNumbers {
     glm::mat3 clip_from_object{1.0f};
-    glm::mat3 object_from_scene{1.0f};
+    glm::dmat3 object_from_scene{1.0};
     glm::vec3 eye_high{0.0f};  // two floats hold the eye in object space to double precision
     glm::vec3 eye_low{0.0f};
 };
@@ -43,7 +46,7 @@ MeshNumbers mesh_numbers(const ViewNumbers& view, const Transform& scene_from_ob
                          const Transform& object_from_scene);
 
 struct SphereNumbers {
-    glm::mat3 object_from_scene{1.0f};  // object: unit sphere at 0
+    glm::dmat3 object_from_scene{1.0};  // object: unit sphere at 0
     glm::vec3 eye{0.0f};
     float eye_power = 0.0f;  // dot(eye, eye) - 1
 };
@@ -51,7 +54,7 @@ SphereNumbers sphere_numbers(const ViewNumbers& view, const Sphere& sphere,
                              const Transform& object_from_scene);
 
 struct BoxNumbers {
-    glm::mat3 object_from_scene{1.0f};
+    glm::dmat3 object_from_scene{1.0};
     glm::vec3 min{0.0f};  // relative to the eye
     glm::vec3 max{0.0f};
 };
@@ -60,9 +63,15 @@ BoxNumbers box_numbers(const ViewNumbers& view, const Box& box, const Transform&
 struct PlaneNumbers {
     glm::vec3 normal{0.0f};  // scene space, unit
     float height = 0.0f;     // of the eye above the plane
+    // uv of a point of the plane: uv + (dot(u, p), dot(v, p)) with p relative to the eye.
+    glm::vec2 uv{0.0f};
+    glm::vec3 u{0.0f};
+    glm::vec3 v{0.0f};
+    glm::vec3 dpdu{0.0f};  // scene space
+    glm::vec3 dpdv{0.0f};
 };
 PlaneNumbers plane_numbers(const ViewNumbers& view, const Plane& plane,
-                           const Transform& object_from_scene);
+                           const Transform& scene_from_object, const Transform& object_from_scene);
 
 // A box around the bounds, relative to the eye and a little larger, so that rasterising its back
 // faces reaches every pixel whose ray meets the bounds.

@@ -1,0 +1,305 @@
+#include "tracer/accel/local_point.h"
+
+#include "tracer/geometry/axis_frame.h"
+#include "tracer/geometry/triangle_test.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <variant>
+
+namespace raypick {
+
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+double largest(const glm::dvec3& v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+glm::dvec3 at(const ObjectRay& ray, double t) {
+    return ray.origin + t * ray.direction;
+}
+
+// What the shape's intersection found where it gave this hit: a Hit has t in float only. `parts`:
+// the hit's primitive is a part of the shape, not an element of a set.
+template <typename AnyShape>
+ShapeHit found_again(const AnyShape& shape, const ObjectRay& ray, const Hit& hit, bool parts) {
+    ShapeHit best;
+    best.t = static_cast<double>(hit.t);
+    best.primitive = parts ? hit.primitive : 0;
+    double smallest_gap = std::numeric_limits<double>::infinity();
+    const ShapeHits hits = intersect(shape, ray);
+    for (int i = 0; i < hits.count; ++i) {
+        const ShapeHit& candidate = hits.hit[static_cast<std::size_t>(i)];
+        if (parts && candidate.primitive != hit.primitive) continue;
+        const double gap = std::abs(candidate.t - static_cast<double>(hit.t));
+        if (!(gap < smallest_gap)) continue;
+        smallest_gap = gap;
+        best = candidate;
+    }
+    return best;
+}
+
+// Where walls meet, a point on one that rounding put beyond the other would see what lies outside.
+// So points keep off the rim by this length: more than rounding to float, less than can be seen.
+double off_the_rim(double magnitude, double edge_length) {
+    return std::min(0.25 * edge_length, magnitude * 0x1p-21);
+}
+
+// Around an axis: the unit vectors away from it and along the turn. On the axis: the frame's own.
+struct Around {
+    glm::dvec3 away{0.0};
+    glm::dvec3 along{0.0};
+    double distance = 0.0;
+};
+
+Around around_axis(const AxisFrame& frame, const glm::dvec3& from_axis_point) {
+    const double x = glm::dot(from_axis_point, frame.x);
+    const double z = glm::dot(from_axis_point, frame.z);
+    const double distance = std::hypot(x, z);
+    const double cosine = distance > 0.0 ? x / distance : 1.0;
+    const double sine = distance > 0.0 ? z / distance : 0.0;
+    return {cosine * frame.x + sine * frame.z, cosine * frame.z - sine * frame.x, distance};
+}
+
+LocalPoint flat_point(const glm::dvec3& position, const glm::dvec3& normal, double magnitude) {
+    LocalPoint point;
+    point.position = position;
+    point.geometric_normal = normal;
+    point.shading_normal = normal;
+    point.magnitude = magnitude;
+    return point;
+}
+
+LocalPoint sphere_point(const Sphere& sphere, const ShapeHit& hit, const ObjectRay& ray) {
+    const glm::dvec3 n = glm::normalize(at(ray, hit.t) - sphere.centre);
+    LocalPoint point =
+        flat_point(sphere.centre + sphere.radius * n, n, largest(sphere.centre) + sphere.radius);
+    const double from_axis = std::hypot(n.x, n.z);
+    if (!(from_axis > 1e-9)) return point;  // the poles have no longitude
+    point.dpdu = kTurn * sphere.radius * glm::dvec3(-n.z, 0.0, n.x);
+    point.dpdv = std::numbers::pi * sphere.radius *
+                 glm::dvec3(n.y * n.x / from_axis, -from_axis, n.y * n.z / from_axis);
+    return point;
+}
+
+// A disk and its derivatives by angle and radius; the outer radius counts.
+LocalPoint disk_point(const Disk& disk, const AxisFrame& frame, const ObjectRay& ray, double t) {
+    const Around around = around_axis(frame, at(ray, t) - disk.centre);
+    const double radius = std::clamp(around.distance, disk.inner_radius, disk.radius);
+    LocalPoint point = flat_point(disk.centre + radius * around.away, disk.normal,
+                                  largest(disk.centre) + disk.radius);
+    if (!(around.distance > 0.0)) return point;
+    point.dpdu = kTurn * radius * around.along;
+    point.dpdv = disk.radius * around.away;
+    return point;
+}
+
+LocalPoint cone_point(const Cone& cone, const ShapeHit& hit, const ObjectRay& ray) {
+    const glm::dvec3 axis = cone.apex - cone.base;
+    const double length = glm::length(axis);
+    // Caps measure their angles in the side's frame, whichever way they look.
+    const AxisFrame frame = axis_frame(axis);
+    const double magnitude = std::max(largest(cone.base), largest(cone.apex)) +
+                             std::max(cone.base_radius, cone.apex_radius);
+    if (hit.primitive != 0) {
+        const bool is_base = hit.primitive == 1;
+        const Disk cap{is_base ? cone.base : cone.apex, is_base ? -frame.y : frame.y,
+                       is_base ? cone.base_radius : cone.apex_radius, 0.0};
+        LocalPoint point = disk_point(cap, frame, ray, hit.t);
+        point.magnitude = magnitude;
+        return point;
+    }
+    const glm::dvec3 from_base = at(ray, hit.t) - cone.base;
+    const Around around = around_axis(frame, from_base);
+    const double height = std::clamp(glm::dot(from_base, frame.y) / length, 0.0, 1.0);
+    const double radius = cone.base_radius + height * (cone.apex_radius - cone.base_radius);
+    const double widening = (cone.apex_radius - cone.base_radius) / length;
+    const glm::dvec3 foot =
+        height < 0.5 ? cone.base + height * axis : cone.apex - (1.0 - height) * axis;
+    LocalPoint point =
+        flat_point(foot + radius * around.away, around.away - widening * frame.y, magnitude);
+    if (!(radius > 0.0)) return point;
+    point.dpdu = kTurn * radius * around.along;
+    point.dpdv = axis + (cone.apex_radius - cone.base_radius) * around.away;
+    return point;
+}
+
+LocalPoint torus_point(const Torus& torus, const ShapeHit& hit, const ObjectRay& ray) {
+    const AxisFrame frame = axis_frame(torus.axis);
+    const glm::dvec3 from_centre = at(ray, hit.t) - torus.centre;
+    const Around around = around_axis(frame, from_centre);
+    const glm::dvec3 ring = torus.major_radius * around.away;
+    const glm::dvec3 out = glm::normalize(from_centre - ring);
+    LocalPoint point = flat_point(torus.centre + ring + torus.minor_radius * out, out,
+                                  largest(torus.centre) + torus.major_radius + torus.minor_radius);
+    const double from_axis = torus.major_radius + torus.minor_radius * glm::dot(out, around.away);
+    point.dpdu = kTurn * from_axis * around.along;
+    point.dpdv = kTurn * torus.minor_radius *
+                 (glm::dot(out, around.away) * frame.y - glm::dot(out, frame.y) * around.away);
+    return point;
+}
+
+// The point a u v of the plane through the corners, exact to double rounding.
+LocalPoint triangle_point(const ObjectRay& ray, const Hit& hit, const glm::dvec3& a,
+                          const glm::dvec3& b, const glm::dvec3& c) {
+    glm::dvec2 uv(hit.uv);
+    if (const auto exact = intersect_triangle(shear(ray), a, b, c)) uv = {exact->u, exact->v};
+    LocalPoint point =
+        flat_point((1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c, glm::cross(b - a, c - a),
+                   std::max({largest(a), largest(b), largest(c)}));
+    point.dpdu = b - a;
+    point.dpdv = c - a;
+    return point;
+}
+
+// Interpolated where the mesh has normals, turned to the side of the geometric normal.
+glm::dvec3 mesh_shading_normal(const Mesh& mesh, const glm::uvec3& corner, const Hit& hit,
+                               const glm::dvec3& geometric_normal) {
+    if (mesh.normals.empty()) return geometric_normal;
+    const auto u = static_cast<double>(hit.uv.x);
+    const auto v = static_cast<double>(hit.uv.y);
+    const glm::dvec3 normal = (1.0 - u - v) * glm::dvec3(mesh.normals[corner.x]) +
+                              u * glm::dvec3(mesh.normals[corner.y]) +
+                              v * glm::dvec3(mesh.normals[corner.z]);
+    if (!(glm::dot(normal, normal) > 1e-12)) return geometric_normal;
+    return glm::dot(normal, geometric_normal) < 0.0 ? -normal : normal;
+}
+
+// From derivatives by the weights of the second and third corner to those by the mesh's uv.
+void take_mesh_uv(const Mesh& mesh, const glm::uvec3& corner, LocalPoint& point) {
+    const glm::dvec3 edge_b = point.dpdu;
+    const glm::dvec3 edge_c = point.dpdv;
+    point.dpdu = glm::dvec3(0.0);
+    point.dpdv = glm::dvec3(0.0);
+    if (mesh.uvs.empty()) return;
+    const glm::dvec2 a(mesh.uvs[corner.x]);
+    const glm::dvec2 b = glm::dvec2(mesh.uvs[corner.y]) - a;
+    const glm::dvec2 c = glm::dvec2(mesh.uvs[corner.z]) - a;
+    const double determinant = b.x * c.y - b.y * c.x;
+    if (!(std::abs(determinant) > 1e-15 * glm::length(b) * glm::length(c))) return;
+    point.dpdu = (c.y * edge_b - b.y * edge_c) / determinant;
+    point.dpdv = (b.x * edge_c - c.x * edge_b) / determinant;
+}
+
+struct LocalPointOf {
+    const Scene& scene;
+    const ObjectRay& ray;
+    const Hit& hit;
+
+    LocalPoint operator()(const Sphere& sphere) const {
+        return sphere_point(sphere, found_again(sphere, ray, hit, true), ray);
+    }
+
+    LocalPoint operator()(const Plane& plane) const {
+        const glm::dvec3 p = at(ray, found_again(plane, ray, hit, true).t);
+        const glm::dvec3 n = plane.normal;
+        const double height = glm::dot(n, p) + plane.d;
+        LocalPoint point = flat_point(p - n * (height / glm::dot(n, n)), n, largest(p));
+        // u and v are the coordinates other than the one that the normal is longest along.
+        const glm::dvec3 length = glm::abs(n);
+        int across = 2;
+        if (length.x > length.y && length.x > length.z) {
+            across = 0;
+        } else if (length.y >= length.z) {
+            across = 1;
+        }
+        const int u = across == 0 ? 1 : 0;
+        const int v = across == 2 ? 1 : 2;
+        point.dpdu[u] = 1.0;
+        point.dpdu[across] = -n[u] / n[across];
+        point.dpdv[v] = 1.0;
+        point.dpdv[across] = -n[v] / n[across];
+        return point;
+    }
+
+    LocalPoint operator()(const Box& box) const {
+        const auto axis = static_cast<int>(hit.primitive / 2);
+        const bool upper = hit.primitive % 2 != 0;
+        const glm::dvec3 p = at(ray, found_again(box, ray, hit, true).t);
+        LocalPoint point;
+        point.position[axis] = upper ? box.max[axis] : box.min[axis];
+        point.geometric_normal[axis] = upper ? 1.0 : -1.0;
+        point.shading_normal = point.geometric_normal;
+        point.magnitude = std::max(largest(box.min), largest(box.max));
+        for (int other = 0; other < 3; ++other) {
+            if (other == axis) continue;
+            const double margin = off_the_rim(point.magnitude, box.max[other] - box.min[other]);
+            point.position[other] =
+                std::clamp(p[other], box.min[other] + margin, box.max[other] - margin);
+        }
+        const int u = (axis + 1) % 3;
+        const int v = (axis + 2) % 3;
+        point.dpdu[u] = box.max[u] - box.min[u];
+        point.dpdv[v] = box.max[v] - box.min[v];
+        return point;
+    }
+
+    LocalPoint operator()(const Triangle& triangle) const {
+        return triangle_point(ray, hit, triangle.a, triangle.b, triangle.c);
+    }
+
+    LocalPoint operator()(const Disk& disk) const {
+        return disk_point(disk, axis_frame(disk.normal), ray, found_again(disk, ray, hit, true).t);
+    }
+
+    LocalPoint operator()(const Rectangle& rectangle) const {
+        const ShapeHit exact = found_again(rectangle, ray, hit, true);
+        const glm::dvec3& u = rectangle.edge_u;
+        const glm::dvec3& v = rectangle.edge_v;
+        const double magnitude = largest(rectangle.corner) + largest(u) + largest(v);
+        const auto inside = [magnitude](double weight, const glm::dvec3& edge) {
+            const double length = glm::length(edge);
+            const double margin = off_the_rim(magnitude, length) / length;
+            return std::clamp(weight, margin, 1.0 - margin);
+        };
+        LocalPoint point =
+            flat_point(rectangle.corner + inside(exact.uv.x, u) * u + inside(exact.uv.y, v) * v,
+                       glm::cross(u, v), magnitude);
+        point.dpdu = u;
+        point.dpdv = v;
+        return point;
+    }
+
+    LocalPoint operator()(const Cone& cone) const {
+        return cone_point(cone, found_again(cone, ray, hit, true), ray);
+    }
+
+    LocalPoint operator()(const Torus& torus) const {
+        return torus_point(torus, found_again(torus, ray, hit, true), ray);
+    }
+
+    LocalPoint operator()(const SphereSetInstance& instance) const {
+        const Sphere sphere = sphere_of(scene.sphere_sets[instance.set], hit.primitive);
+        return sphere_point(sphere, found_again(sphere, ray, hit, false), ray);
+    }
+
+    LocalPoint operator()(const ConeSetInstance& instance) const {
+        const Cone cone = cone_of(scene.cone_sets[instance.set], hit.primitive);
+        return cone_point(cone, found_again(cone, ray, hit, false), ray);
+    }
+
+    LocalPoint operator()(const MeshInstance& instance) const {
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        const glm::uvec3 corner = mesh.triangles[hit.primitive];
+        LocalPoint point = triangle_point(ray, hit, glm::dvec3(mesh.positions[corner.x]),
+                                          glm::dvec3(mesh.positions[corner.y]),
+                                          glm::dvec3(mesh.positions[corner.z]));
+        point.shading_normal = mesh_shading_normal(mesh, corner, hit, point.geometric_normal);
+        take_mesh_uv(mesh, corner, point);
+        return point;
+    }
+};
+
+}  // namespace
+
+LocalPoint local_point(const Scene& scene, const Object& object, const ObjectRay& ray,
+                       const Hit& hit) {
+    return std::visit(LocalPointOf{scene, ray, hit}, object.shape);
+}
+
+}  // namespace raypick

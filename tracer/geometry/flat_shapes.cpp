@@ -1,0 +1,83 @@
+// Disk and rectangle.
+#include "tracer/geometry/axis_frame.h"
+#include "tracer/geometry/shapes.h"
+#include "tracer/geometry/triangle_test.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace raypick {
+
+namespace {
+
+// Where the ray meets the plane through `point`; nothing if it runs along it, or on a NaN.
+std::optional<double> meet_plane(const ObjectRay& ray, const glm::dvec3& point,
+                                 const glm::dvec3& normal) {
+    const double t = glm::dot(normal, point - ray.origin) / glm::dot(normal, ray.direction);
+    if (!std::isfinite(t)) return std::nullopt;
+    return t;
+}
+
+// Whether the ray passes within the four corners: the edge test of triangle_test.h, so that no ray
+// slips between rectangles, or a rectangle and a triangle, that share an edge.
+bool passes_within(const ObjectRay& ray, const std::array<glm::dvec3, 4>& corners) {
+    const ShearedRay sheared = shear(ray);
+    std::array<glm::dvec2, 4> p;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const glm::dvec3 from_ray = corners[i] - sheared.origin;
+        p[i] = {from_ray[sheared.kx] - sheared.sx * from_ray[sheared.kz],
+                from_ray[sheared.ky] - sheared.sy * from_ray[sheared.kz]};
+    }
+    bool left = true;
+    bool right = true;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const glm::dvec2& a = p[i];
+        const glm::dvec2& b = p[(i + 1) % 4];
+        const double side = b.x * a.y - b.y * a.x;
+        left = left && side >= 0.0;
+        right = right && side <= 0.0;
+    }
+    return left != right;  // both: seen edge on
+}
+
+}  // namespace
+
+ShapeHits intersect(const Disk& disk, const ObjectRay& ray) {
+    const auto t = meet_plane(ray, disk.centre, disk.normal);
+    if (!t) return {};
+    const glm::dvec3 from_centre = (ray.origin - disk.centre) + *t * ray.direction;
+    const double distance = glm::length(from_centre);
+    if (!(distance >= disk.inner_radius && distance <= disk.radius)) return {};
+    const AxisFrame frame = axis_frame(disk.normal);
+    ShapeHit hit;
+    hit.t = *t;
+    hit.normal = disk.normal;
+    hit.uv = {turn(glm::dot(from_centre, frame.x), glm::dot(from_centre, frame.z)),
+              distance / disk.radius};
+    return {{{hit}}, 1};
+}
+
+ShapeHits intersect(const Rectangle& rectangle, const ObjectRay& ray) {
+    const glm::dvec3& a = rectangle.corner;
+    const glm::dvec3 b = a + rectangle.edge_u;
+    const glm::dvec3 d = a + rectangle.edge_v;
+    if (!passes_within(ray, {a, b, b + rectangle.edge_v, d})) return {};
+    const glm::dvec3 normal = glm::cross(rectangle.edge_u, rectangle.edge_v);
+    const auto t = meet_plane(ray, a, normal);
+    if (!t) return {};
+    const glm::dvec3 from_corner = (ray.origin - a) + *t * ray.direction;
+    const double squared_area = glm::dot(normal, normal);
+    const double u = glm::dot(glm::cross(from_corner, rectangle.edge_v), normal) / squared_area;
+    const double v = glm::dot(glm::cross(rectangle.edge_u, from_corner), normal) / squared_area;
+    ShapeHit hit;
+    hit.t = *t;
+    hit.normal = normal;
+    hit.uv = {std::clamp(u, 0.0, 1.0), std::clamp(v, 0.0, 1.0)};
+    return {{{hit}}, 1};
+}
+
+}  // namespace raypick

@@ -1,0 +1,102 @@
+#include "tracer/render/pixel_tracer.h"
+
+#include "tracer/error.h"
+#include "tracer/shade/random.h"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <utility>
+
+namespace raypick {
+
+namespace {
+
+bool finite_and_not_negative(double number) {
+    return number >= 0.0 && std::isfinite(number);
+}
+
+// Before any of it is used.
+const RenderSettings& checked(const RenderSettings& settings, const Camera& camera,
+                              ImageSize size) {
+    check_camera(camera);
+    check_settings(settings);
+    if (size.rows <= 0 || size.cols <= 0) throw Error("an image needs at least one row and column");
+    return settings;
+}
+
+// A pixel's share of what a whole pixel covers when it takes side x side rays.
+RayCone part_of(const RayCone& cone, int side) {
+    const auto parts = static_cast<float>(side);
+    return {cone.width / parts, cone.spread / parts};
+}
+
+}  // namespace
+
+void check_settings(const RenderSettings& settings) {
+    if (settings.samples < 1 || settings.samples > 64) {
+        throw Error("samples: must be from 1 to 64 along each side of a pixel");
+    }
+    if (!(settings.contrast >= 0.0f && settings.contrast <= 1.0f)) {
+        throw Error("contrast: must be from 0 to 1");
+    }
+    if (!finite_and_not_negative(settings.aperture)) {
+        throw Error("aperture: must be 0 or a positive number");
+    }
+    if (!finite_and_not_negative(settings.focus_distance)) {
+        throw Error("focus_distance: must be 0 or a positive number");
+    }
+    if (!finite_and_not_negative(static_cast<double>(settings.cutoff))) {
+        throw Error("cutoff: must be 0 or a positive number");
+    }
+}
+
+PixelTracer::PixelTracer(std::shared_ptr<const Accel> accel, const Camera& camera, ImageSize size,
+                         const RenderSettings& settings)
+    : accel_(std::move(accel)),
+      camera_(camera),
+      size_(size),
+      settings_(checked(settings, camera, size)),
+      rays_(camera, size),
+      lights_(effective_lights(accel_->scene(), camera)),
+      pattern_(settings),
+      focus_distance_(settings.focus_distance > 0.0 ? settings.focus_distance
+                                                    : glm::distance(camera.eye, camera.at)) {}
+
+TracedRay PixelTracer::centre(Pixel pixel, RayCounts& counts, const std::stop_token& stop) const {
+    const std::uint64_t seed = RandomSequence::derive(settings_.seed, size_.index(pixel));
+    const EyeRay eye{rays_.ray(pixel_centre(pixel)), rays_.cone(), seed};
+    return trace(*accel_, lights_, settings_, eye, counts, stop);
+}
+
+TracedRay PixelTracer::first_hit(Pixel pixel) const {
+    // Without lights and further rays it is no more than a look at the surface, the same one that
+    // traced rays have.
+    RenderSettings settings;
+    settings.depth = 1;
+    RayCounts not_counted;
+    const EyeRay eye{rays_.ray(pixel_centre(pixel)), rays_.cone(), settings_.seed};
+    return trace(*accel_, {}, settings, eye, not_counted, {});
+}
+
+glm::vec3 PixelTracer::corner(Pixel pixel, RayCounts& counts, const std::stop_token& stop) const {
+    const ImageSize corners{size_.rows + 1, size_.cols + 1};
+    const std::uint64_t seed = RandomSequence::derive(settings_.seed, corners.index(pixel));
+    const ImagePoint point{static_cast<double>(pixel.row), static_cast<double>(pixel.col)};
+    const EyeRay eye{rays_.ray(point), rays_.cone(), seed};
+    return trace(*accel_, lights_, settings_, eye, counts, stop).colour;
+}
+
+void PixelTracer::add_sample(Pixel pixel, int index, PixelMean& mean, RayCounts& counts,
+                             const std::stop_token& stop) const {
+    const PixelSample sample = pattern_.sample(size_.index(pixel), index);
+    const ImagePoint centre = pixel_centre(pixel);
+    const ImagePoint point{centre.r + sample.offset.y, centre.c + sample.offset.x};
+    const glm::dvec2 lens = 0.5 * settings_.aperture * sample.lens;
+    const Ray ray =
+        settings_.aperture > 0.0 ? rays_.lens_ray(point, lens, focus_distance_) : rays_.ray(point);
+    const EyeRay eye{ray, part_of(rays_.cone(), settings_.samples), sample.seed};
+    mean.add(trace(*accel_, lights_, settings_, eye, counts, stop).colour, sample.negative);
+}
+
+}  // namespace raypick

@@ -1,0 +1,44 @@
+// Lights as a lit point sees them: one point of the light at a time.
+//
+// The GLSL twin is in shaders/local_light.glsl; it takes the centres of the cells.
+#pragma once
+
+#include "tracer/scene/light.h"
+#include "tracer/shade/random.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <limits>
+
+namespace raypick {
+
+// From a lit point towards a point of a light, scene space.
+struct LightSample {
+    glm::vec3 direction{0.0f, 1.0f, 0.0f};                    // unit
+    float distance = std::numeric_limits<float>::infinity();  // infinite for directional lights
+    glm::vec3 colour{0.0f};  // that arrives if nothing is in the way; 0 beyond a spot's cone
+};
+
+// samples * samples of an area light, 1 of the others.
+int sample_count(const Light& light);
+
+// Sample `index` of sample_count(light). An area light of n x n samples is cut into n x n cells of
+// equal area, the sample lies at random in cell (index % n, index / n), and its colour is 1 / n^2
+// of the light's. A single sample is at the centre; it and other lights draw nothing from `random`.
+LightSample light_sample(const Light& light, const glm::dvec3& from, int index,
+                         RandomSequence& random);
+
+// Maps the unit square to the unit disk, the middle to the centre, equal areas to equal areas.
+// Source: Shirley, Chiu, "A Low Distortion Map Between Disk and Square", JGT 2(3), 1997.
+glm::dvec2 disk_from_square(const glm::dvec2& square);
+
+// Two unit vectors perpendicular to a unit vector and to each other. Source: Duff et al., "Building
+// an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
+struct PlaneAxes {
+    glm::dvec3 u{0.0};
+    glm::dvec3 v{0.0};
+};
+PlaneAxes axes_across(const glm::dvec3& normal);
+
+}  // namespace raypick

@@ -1,0 +1,103 @@
+#include "viewer/raster/draw_objects.h"
+
+#include <glm/matrix.hpp>
+
+namespace raypick {
+
+namespace {
+
+// Draws one object with the program in `uniforms`, which is current.
+struct ShapeDraw {
+    const ViewNumbers& view;
+    const DrawnObject& object;
+    const Uniforms& uniforms;
+
+    void operator()(const std::shared_ptr<const GpuMesh>& mesh) const {
+        const MeshNumbers numbers =
+            mesh_numbers(view, object.scene_from_object, object.object_from_scene);
+        set_space(numbers.object_from_scene);
+        uniforms.set("clip_from_object", numbers.clip_from_object);
+        uniforms.set("eye_high", numbers.eye_high);
+        uniforms.set("eye_low", numbers.eye_low);
+        for (const GpuMesh::Chunk& chunk : mesh->chunks()) {
+            uniforms.set("first_primitive", static_cast<int>(chunk.first));
+            uniforms.set("has_normals", static_cast<int>(chunk.has_normals));
+            uniforms.set("has_uvs", static_cast<int>(chunk.has_uvs));
+            bind(Unit::triangles, GL_TEXTURE_BUFFER, chunk.triangles.texture());
+            bind(Unit::positions, GL_TEXTURE_BUFFER, chunk.positions.texture());
+            bind(Unit::normals, GL_TEXTURE_BUFFER, chunk.normals.texture());
+            bind(Unit::uvs, GL_TEXTURE_BUFFER, chunk.uvs.texture());
+            glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * chunk.count));
+        }
+    }
+
+    void operator()(const Sphere& sphere) const {
+        const SphereNumbers numbers = sphere_numbers(view, sphere, object.object_from_scene);
+        set_space(numbers.object_from_scene);
+        uniforms.set("sphere_eye", numbers.eye);
+        uniforms.set("sphere_eye_power", numbers.eye_power);
+        draw_proxy();
+    }
+
+    void operator()(const Box& box) const {
+        const BoxNumbers numbers = box_numbers(view, box, object.object_from_scene);
+        set_space(numbers.object_from_scene);
+        uniforms.set("box_min", numbers.min);
+        uniforms.set("box_max", numbers.max);
+        draw_proxy();
+    }
+
+    void operator()(const Plane& plane) const {
+        const PlaneNumbers numbers =
+            plane_numbers(view, plane, object.scene_from_object, object.object_from_scene);
+        uniforms.set("plane_normal", numbers.normal);
+        uniforms.set("plane_height", numbers.height);
+        if (object.textured) {
+            uniforms.set("plane_uv", numbers.uv);
+            uniforms.set("plane_u", numbers.u);
+            uniforms.set("plane_v", numbers.v);
+            uniforms.set("plane_dpdu", numbers.dpdu);
+            uniforms.set("plane_dpdv", numbers.dpdv);
+        }
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
+
+private:
+    // The space that the shape's shader works in.
+    void set_space(const glm::dmat3& object_from_scene) const {
+        uniforms.set("object_from_scene", glm::mat3(object_from_scene));
+        if (!object.textured) return;
+        uniforms.set("scene_from_object", glm::mat3(glm::inverse(object_from_scene)));
+    }
+
+    // Back faces only: one fragment a pixel, also with the eye inside.
+    void draw_proxy() const {
+        const ProxyNumbers proxy = proxy_numbers(view, object.bounds);
+        uniforms.set("clip_from_scene", glm::mat3(view.clip_from_scene));
+        uniforms.set("proxy_min", proxy.min);
+        uniforms.set("proxy_max", proxy.max);
+        glEnable(GL_CULL_FACE);
+        glDrawArrays(GL_TRIANGLES, 0, 36);
+        glDisable(GL_CULL_FACE);
+    }
+};
+
+}  // namespace
+
+void bind(Unit unit, GLenum target, GLuint texture) {
+    bind_texture(static_cast<GLuint>(unit), target, texture);
+}
+
+void draw_objects(ShaderSet& shaders, Pass pass, const ViewNumbers& view,
+                  std::span<const DrawnObject* const> objects, int material_count) {
+    for (const DrawnObject* object : objects) {
+        const Uniforms uniforms(shaders.shape(pass, object->shape.index(), object->textured));
+        uniforms.set("object_id", object->id);
+        uniforms.set("object_material", object->material);
+        uniforms.set("sides", static_cast<int>(object->sides));
+        uniforms.set("material_count", material_count);
+        std::visit(ShapeDraw{view, *object, uniforms}, object->shape);
+    }
+}
+
+}  // namespace raypick
