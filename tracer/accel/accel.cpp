@@ -185,7 +185,7 @@ struct ShapeTrace {
 
 private:
     template <typename Leaf>
-    bool down_the_tree(const Leaf& leaf) const {
+    [[nodiscard]] bool down_the_tree(const Leaf& leaf) const {
         const Bvh& bvh = passage.instance.tree->bvh;
         if (bvh.nodes.empty()) return false;
         const glm::vec3 origin(passage.local.origin);

@@ -118,7 +118,7 @@ Footprint footprint(const SurfacePoint& point, const glm::vec3& direction, float
     if (!(length > 0.0)) return {};
     across /= length;
     const glm::dvec3 shadow = glm::cross(across, n);
-    const double size = static_cast<double>(width);
+    const auto size = static_cast<double>(width);
     const TangentPlane plane(point.dpdu, point.dpdv);
     return {plane.weights(size / std::max(std::abs(cosine), kLeastCosine) * shadow),
             plane.weights(size * across)};

@@ -256,7 +256,7 @@ void GltfDocument::locate_image(std::size_t index, ImageSource& source) {
         return;
     }
     const JsonValue uri = json.need("uri");
-    const std::string text = uri.text();
+    const std::string& text = uri.text();
     if (is_data_uri(text)) {
         source.bytes = decoded_data(uri, text);
     } else {

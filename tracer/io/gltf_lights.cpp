@@ -27,7 +27,8 @@ glm::vec3 light_colour(const JsonValue& json) {
         for (int i = 0; i < 3; ++i)
             colour[i] = numbers[static_cast<std::size_t>(i)].number(kIntensity);
     }
-    return glm::vec3(glm::min(colour * intensity, glm::dvec3(1e30)));
+    const glm::vec3 emitted(glm::min(colour * intensity, glm::dvec3(1e30)));
+    return emitted;
 }
 
 // Half angles of the cone, in degrees.

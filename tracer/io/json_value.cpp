@@ -263,7 +263,7 @@ JsonValue::JsonValue(const JsonFile* whole, const std::string* file, const Json*
     : whole_(whole), file_(file), json_(json), path_(std::move(path)) {}
 
 std::string JsonValue::place() const {
-    const std::string path = shown_path(path_);
+    std::string path = shown_path(path_);
     if (whole_ == nullptr || whole_->text.empty()) return path;
     const std::string name = name_on_the_way(whole_->root, path_);
     return fmt::format("line {}: {}{}", json_line(whole_->text, path_), path,

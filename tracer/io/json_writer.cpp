@@ -15,7 +15,7 @@ namespace raypick {
 namespace {
 
 constexpr std::size_t kFlushSize = 1u << 16u;
-constexpr std::size_t kBase64Piece = 3u * (1u << 14u);  // bytes: a multiple of three
+constexpr std::size_t kBase64Piece = std::size_t{3} << 14u;  // bytes: a multiple of three
 
 bool is_negative_zero(double value) {
     return value == 0.0 && std::signbit(value);

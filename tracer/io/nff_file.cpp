@@ -243,8 +243,8 @@ std::size_t NffReader::corner_count(std::size_t numbers_a_corner) {
     if (count != std::floor(count))
         scanner_.fail(fmt::format("the number of corners must be a whole number, not {}", count));
     // A number takes at least two bytes, with the blank before it.
-    const auto most = static_cast<double>(scanner_.bytes_left() / (2 * numbers_a_corner));
-    if (count > most) {
+    const std::size_t most = scanner_.bytes_left() / (2 * numbers_a_corner);
+    if (count > static_cast<double>(most)) {
         scanner_.fail(fmt::format("promises {} corners, but the file ends before that", count));
     }
     return static_cast<std::size_t>(count);
@@ -320,7 +320,8 @@ glm::dvec3 NffReader::point(std::string_view what) {
 glm::vec3 NffReader::colour(std::string_view what) {
     const double red = not_negative(what);
     const double green = not_negative(what);
-    return glm::vec3(glm::dvec3(red, green, not_negative(what)));
+    const glm::vec3 rgb(glm::dvec3(red, green, not_negative(what)));
+    return rgb;
 }
 
 }  // namespace raypick

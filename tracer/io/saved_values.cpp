@@ -2,7 +2,9 @@
 
 #include "tracer/io/saved_members.h"
 
-#include <cstring>
+#include <array>
+#include <bit>
+#include <cstdint>
 
 namespace raypick {
 
@@ -158,7 +160,8 @@ void write_parts(JsonWriter& json, const std::vector<Part>& parts) {
 // Is this the identity, down to the signs of its zeros?
 bool is_plain(const Transform& transform) {
     const Transform identity;
-    return std::memcmp(&transform, &identity, sizeof identity) == 0;
+    using Bits = std::array<std::uint64_t, sizeof identity / sizeof(double)>;
+    return std::bit_cast<Bits>(transform) == std::bit_cast<Bits>(identity);
 }
 
 }  // namespace

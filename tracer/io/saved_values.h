@@ -7,7 +7,7 @@
 
 namespace raypick {
 
-void write_value(JsonWriter& json, const NamedCamera& camera);
+void write_value(JsonWriter& json, const NamedCamera& named);
 void write_value(JsonWriter& json, const Light& light);
 void write_value(JsonWriter& json, const Environment& environment);
 void write_value(JsonWriter& json, const Texture& texture);

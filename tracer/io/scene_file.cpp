@@ -280,7 +280,7 @@ private:
     // What an instance repeats.
     const Entry& original(const JsonValue& instance) {
         const JsonValue of = instance.need("of");
-        const std::string name = of.text();
+        const std::string& name = of.text();
         const auto found = by_name_.find(name);
         if (found == by_name_.end()) {
             Keys known;

@@ -109,7 +109,8 @@ Checker read_checker(const JsonValue& value) {
 }
 
 glm::vec3 read_row(const JsonValue& value) {
-    return glm::vec3(read_point(value));
+    const glm::vec3 row(read_point(value));
+    return row;
 }
 
 // Two numbers [u, v], or one for both.

@@ -48,7 +48,7 @@ TextureLibrary::ImageNumber TextureLibrary::image(ImageSource source, TexelCodin
     return known->second;
 }
 
-void TextureLibrary::decode(Entry& entry) const {
+void TextureLibrary::decode(Entry& entry) {
     try {
         if (!entry.source.problem.empty()) throw Error(entry.source.problem);
         FileBytes file;

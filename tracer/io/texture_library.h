@@ -73,7 +73,7 @@ private:
         std::function<ByteImage()> bake;
     };
 
-    void decode(Entry& entry) const;
+    static void decode(Entry& entry);
 
     LoadedScene* target_;
     std::vector<Entry> entries_;

@@ -16,9 +16,10 @@ enum Stream : std::uint64_t { image_order, lens_order, path };
 // A random place in the cell of this number, of side x side cells in the unit square.
 glm::dvec2 place_in_cell(std::uint32_t cell, int side, RandomSequence& random) {
     const auto cells = static_cast<std::uint32_t>(side);
-    const double x = cell % cells + static_cast<double>(random.next());
-    const double y = cell / cells + static_cast<double>(random.next());
-    return glm::dvec2(x, y) / static_cast<double>(side);
+    const glm::dvec2 corner(cell % cells, cell / cells);
+    const auto x = static_cast<double>(random.next());
+    const auto y = static_cast<double>(random.next());
+    return (corner + glm::dvec2(x, y)) / static_cast<double>(side);
 }
 
 }  // namespace

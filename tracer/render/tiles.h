@@ -33,7 +33,7 @@ std::vector<Tile> tiles_from_centre(ImageSize size);
 
 // What one thread made of a tile.
 struct TilePart {
-    explicit TilePart(const Tile& tile);
+    explicit TilePart(const Tile& where);
 
     // Pixels by their number in the tile. A colour or a normal that is not finite is kept as 0, and
     // the pixel counts as broken.

@@ -14,13 +14,13 @@ double linear_from(double srgb) {
 }  // namespace
 
 const std::array<float, 256>& srgb_to_linear_table() {
-    static const std::array<float, 256> kTable = [] {
+    static const std::array<float, 256> by_byte = [] {
         std::array<float, 256> table{};
         for (std::size_t i = 0; i < table.size(); ++i)
             table[i] = static_cast<float>(linear_from(static_cast<double>(i) / 255.0));
         return table;
     }();
-    return kTable;
+    return by_byte;
 }
 
 SrgbEncoder::SrgbEncoder() {

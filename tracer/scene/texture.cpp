@@ -199,7 +199,7 @@ glm::vec4 sample(const Texture& texture, const TextureMap& map, const glm::vec2&
     if (const auto* checker = std::get_if<Checker>(&texture.source)) {
         texel = glm::mix(checker->odd, checker->even, even_share(t, a, b));
     } else {
-        const ImageTexture& image = std::get<ImageTexture>(texture.source);
+        const auto& image = std::get<ImageTexture>(texture.source);
         texel = ImageSampler(*image.pixels, map).average(t, a, b);
     }
     return glm::vec4(map.base) + map.gain * texel;

@@ -88,11 +88,10 @@ std::vector<glm::vec4> halved(const LinearRows& rows, const TextureLevel& from,
         for (int i = 0; i < row.count; ++i)
             rows.add(row.first + i, row.share[static_cast<std::size_t>(i)], sum);
         for (const Cover& col : col_covers) {
+            const auto first = static_cast<std::size_t>(col.first);
             glm::vec4 value(0.0f);
-            for (int i = 0; i < col.count; ++i) {
-                value += col.share[static_cast<std::size_t>(i)] *
-                         sum[static_cast<std::size_t>(col.first + i)];
-            }
+            for (std::size_t i = 0; i < static_cast<std::size_t>(col.count); ++i)
+                value += col.share[i] * sum[first + i];
             result.push_back(value);
         }
     }

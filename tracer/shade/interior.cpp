@@ -41,9 +41,9 @@ void Interior::enter(const Body& body, MaterialId material) {
 }
 
 void Interior::leave(const Body& body) {
-    const auto end = entries_.begin() + static_cast<std::ptrdiff_t>(count_);
-    const auto found = std::find_if(entries_.begin(), end,
-                                    [&body](const Entry& entry) { return entry.body == body; });
+    Entry* const end = entries_.data() + count_;
+    Entry* const found = std::find_if(entries_.data(), end,
+                                      [&body](const Entry& entry) { return entry.body == body; });
     if (found == end) return;
     std::move(found + 1, end, found);
     --count_;
@@ -51,8 +51,8 @@ void Interior::leave(const Body& body) {
 
 void Interior::begin_inside(const Body& body, MaterialId material) {
     if (count_ == kMost) return;
-    const auto end = entries_.begin() + static_cast<std::ptrdiff_t>(count_);
-    std::move_backward(entries_.begin(), end, end + 1);
+    Entry* const end = entries_.data() + count_;
+    std::move_backward(entries_.data(), end, end + 1);
     entries_[0] = {body, material};
     ++count_;
 }

@@ -42,7 +42,8 @@ glm::dvec2 stratified(int index, int n, RandomSequence& random) {
     if (n == 1) return glm::dvec2(0.5);
     const auto u = static_cast<double>(random.next());
     const auto v = static_cast<double>(random.next());
-    return glm::dvec2(index % n + u, index / n + v) / static_cast<double>(n);
+    const glm::dvec2 corner(index % n, index / n);
+    return (corner + glm::dvec2(u, v)) / static_cast<double>(n);
 }
 
 struct SampleOf {

@@ -217,7 +217,7 @@ private:
         return colour;
     }
 
-    Split split_at(const ShadingPoint& point, const Boundary& boundary) {
+    [[nodiscard]] Split split_at(const ShadingPoint& point, const Boundary& boundary) const {
         Split split;
         const bool refracts = settings_.refractions && point.kind.transmits();
         if (refracts) {
@@ -254,7 +254,8 @@ private:
     }
 
     // A ray that leaves the point, with its share of the pixel.
-    Path onwards(const Path& path, const glm::vec3& share, const Interior& interior) const {
+    [[nodiscard]] static Path onwards(const Path& path, const glm::vec3& share,
+                                      const Interior& interior) {
         Path next = path;
         next.interior = interior;
         next.weight *= largest(share);
@@ -332,8 +333,8 @@ private:
     }
 
     // Straight through all glass; 0 if anything else is in the way.
-    glm::vec3 transmittance(const Scene& scene, const Accel& accel, const Ray& ray,
-                            const Interior& interior, float width) const {
+    [[nodiscard]] glm::vec3 transmittance(const Scene& scene, const Accel& accel, const Ray& ray,
+                                          const Interior& interior, float width) const {
         std::vector<Hit> crossed;
         const auto opaque = [&](const Hit& hit) {
             const Object& object = scene.objects[object_index(scene, hit.object)];

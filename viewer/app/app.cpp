@@ -24,6 +24,24 @@ double chosen_scale(double wanted, const Window& window) {
     return std::clamp(wanted > 0.0 ? wanted : window.content_scale(), 0.5, 6.0);
 }
 
+// Of a command that looks from one.
+ViewSide side_of(Command command) {
+    switch (command) {
+        case Command::view_back:
+            return ViewSide::back;
+        case Command::view_right:
+            return ViewSide::right;
+        case Command::view_left:
+            return ViewSide::left;
+        case Command::view_top:
+            return ViewSide::top;
+        case Command::view_bottom:
+            return ViewSide::bottom;
+        default:
+            return ViewSide::front;
+    }
+}
+
 }  // namespace
 
 App::App(const ViewOptions& options, Window& window, InputState& input)
@@ -186,22 +204,12 @@ void App::apply(Command command) {
             view_.camera().toggle_projection();
             break;
         case Command::view_front:
-            view_.camera().look_from(ViewSide::front);
-            break;
         case Command::view_back:
-            view_.camera().look_from(ViewSide::back);
-            break;
         case Command::view_right:
-            view_.camera().look_from(ViewSide::right);
-            break;
         case Command::view_left:
-            view_.camera().look_from(ViewSide::left);
-            break;
         case Command::view_top:
-            view_.camera().look_from(ViewSide::top);
-            break;
         case Command::view_bottom:
-            view_.camera().look_from(ViewSide::bottom);
+            view_.camera().look_from(side_of(command));
             break;
         case Command::copy_view:
             copy_view();
@@ -213,11 +221,7 @@ void App::apply(Command command) {
             confirm_ = true;
             break;
         case Command::toggle_help:
-            if (std::holds_alternative<HelpSheet>(overlay_)) {
-                overlay_ = std::monostate{};
-            } else if (std::holds_alternative<std::monostate>(overlay_)) {
-                overlay_ = HelpSheet{};
-            }
+            toggle_help();
             break;
         case Command::toggle_panels:
             panels_ = !panels_;
@@ -234,6 +238,14 @@ void App::apply(Command command) {
         case Command::quit:
             quit_ = true;
             break;
+    }
+}
+
+void App::toggle_help() {
+    if (std::holds_alternative<HelpSheet>(overlay_)) {
+        overlay_ = std::monostate{};
+    } else if (std::holds_alternative<std::monostate>(overlay_)) {
+        overlay_ = HelpSheet{};
     }
 }
 

@@ -53,6 +53,7 @@ private:
     void apply(Command command);
     void escape();
     void copy_view();
+    void toggle_help();
     void frame_selected();
     void ask_for_picture_name();
     void save_picture(const std::filesystem::path& file);

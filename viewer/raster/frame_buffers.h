@@ -9,9 +9,9 @@ namespace raypick {
 // Bottom row first. Cleared to background by clear().
 struct FrameBuffers {
     FrameBuffers() = default;
-    // With `textured`, also what texture look-ups need. Throws Error if OpenGL can't draw images of
-    // this size.
-    FrameBuffers(ImageSize image_size, bool textured);
+    // With `with_textures`, also what texture look-ups need. Throws Error if OpenGL can't draw
+    // images of this size.
+    FrameBuffers(ImageSize image_size, bool with_textures);
 
     // Makes every pixel background, ready for the passes. Leaves `surface` bound.
     void clear() const;

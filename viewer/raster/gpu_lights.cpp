@@ -16,7 +16,8 @@ namespace {
 using LightTexels = std::array<glm::vec4, 5>;
 
 glm::vec4 attenuation_texel(const Attenuation& a, double radius = 0.0) {
-    return glm::vec4(glm::dvec4(a.constant, a.linear, a.quadratic, radius));
+    const glm::vec4 texel(glm::dvec4(a.constant, a.linear, a.quadratic, radius));
+    return texel;
 }
 
 // Fills in what follows the kind.

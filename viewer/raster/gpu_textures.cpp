@@ -130,8 +130,8 @@ bool same_source(const Texture& a, const Texture& b) {
     if (const auto* image = std::get_if<ImageTexture>(&a.source)) {
         return image->pixels == std::get<ImageTexture>(b.source).pixels;
     }
-    const Checker& checker = std::get<Checker>(a.source);
-    const Checker& other = std::get<Checker>(b.source);
+    const auto& checker = std::get<Checker>(a.source);
+    const auto& other = std::get<Checker>(b.source);
     return checker.even == other.even && checker.odd == other.odd;
 }
 

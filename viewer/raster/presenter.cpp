@@ -6,6 +6,7 @@
 #include "viewer/gl/textures.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <vector>
 
 namespace raypick {
@@ -43,8 +44,9 @@ BufferTexture upload_ids(std::span<const ObjectId> selected) {
 }
 
 void set_state() {
-    for (const GLenum capability : {GL_BLEND, GL_SCISSOR_TEST, GL_CULL_FACE, GL_DEPTH_TEST,
-                                    GL_STENCIL_TEST, GL_FRAMEBUFFER_SRGB}) {
+    for (const GLenum capability :
+         std::initializer_list<GLenum>{GL_BLEND, GL_SCISSOR_TEST, GL_CULL_FACE, GL_DEPTH_TEST,
+                                       GL_STENCIL_TEST, GL_FRAMEBUFFER_SRGB}) {
         glDisable(capability);
     }
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);

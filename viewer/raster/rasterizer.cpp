@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <initializer_list>
 
 namespace raypick {
 
@@ -20,8 +21,9 @@ namespace {
 
 // What every pass wants; others (the UI) may have left something else.
 void set_state() {
-    for (const GLenum capability : {GL_BLEND, GL_SCISSOR_TEST, GL_CULL_FACE, GL_DEPTH_TEST,
-                                    GL_STENCIL_TEST, GL_FRAMEBUFFER_SRGB, GL_PRIMITIVE_RESTART}) {
+    for (const GLenum capability : std::initializer_list<GLenum>{
+             GL_BLEND, GL_SCISSOR_TEST, GL_CULL_FACE, GL_DEPTH_TEST, GL_STENCIL_TEST,
+             GL_FRAMEBUFFER_SRGB, GL_PRIMITIVE_RESTART}) {
         glDisable(capability);
     }
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
