@@ -26,8 +26,10 @@ class ModelFiles : public testing::Test {
 protected:
     void SetUp() override {
         const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = std::filesystem::temp_directory_path() /
-                  fmt::format("raypick-{}-{}-{}", test->test_suite_name(), test->name(), getpid());
+        std::string name =
+            fmt::format("raypick-{}-{}-{}", test->test_suite_name(), test->name(), getpid());
+        std::replace(name.begin(), name.end(), '/', '-');  // of tests with parameters
+        folder_ = std::filesystem::temp_directory_path() / name;
         std::filesystem::create_directories(folder_);
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
