@@ -2,10 +2,12 @@
 // is said with its line.
 #include "model_files.h"
 #include "needs.h"
+#include "tracer/accel/accel.h"
 
 #include <gmock/gmock.h>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -205,24 +207,36 @@ double area(const Mesh& mesh) {
     return sum;
 }
 
+// Area within an outline, by the shoelace formula.
+double outline_area(const std::vector<glm::dvec2>& corners) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const glm::dvec2 a = corners[i];
+        const glm::dvec2 b = corners[(i + 1) % corners.size()];
+        sum += 0.5 * (a.x * b.y - b.x * a.y);
+    }
+    return sum;
+}
+
+// As a polygon on the plane z = 3.
+std::string polygon_text(const std::vector<glm::dvec2>& corners) {
+    std::string text = fmt::format("p {}\n", corners.size());
+    for (const glm::dvec2& corner : corners)
+        text += fmt::format("{:.17g} {:.17g} 3\n", corner.x, corner.y);
+    return text;
+}
+
 TEST_F(Nff, GearOf144CornersIsTriangulatedWithinItsOutline) {
     // 36 teeth of four corners each, the tooth's flanks radial: as concave as SPD's gears.
     constexpr int kCorners = 144;
-    std::string text = "f 1 1 1 1 0 1 0 1\np 144\n";
     std::vector<glm::dvec2> corners;
     for (int i = 0; i < kCorners; ++i) {
         const double angle = 2.0 * std::numbers::pi * (i / 2) / (kCorners / 2);
         const double radius = ((i + 1) / 2) % 2 == 0 ? 1.0 : 0.8;
         corners.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
-        text += fmt::format("{:.17g} {:.17g} 3\n", corners.back().x, corners.back().y);
     }
-    double expected = 0.0;  // by the shoelace formula
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        const glm::dvec2 a = corners[i];
-        const glm::dvec2 b = corners[(i + 1) % corners.size()];
-        expected += 0.5 * (a.x * b.y - b.x * a.y);
-    }
-    const Scene scene = scene_of(text);
+    const double expected = outline_area(corners);
+    const Scene scene = scene_of(polygon_text(corners));
     const Mesh& mesh = mesh_of(scene);
     EXPECT_EQ(mesh.triangles.size(), 142u);
     EXPECT_NEAR(area(mesh), expected, 1e-5);
@@ -232,6 +246,71 @@ TEST_F(Nff, GearOf144CornersIsTriangulatedWithinItsOutline) {
         const glm::dvec3 v = glm::dvec3(mesh.positions[t.z]) - a;
         EXPECT_GE(glm::cross(u, v).z, -1e-7) << "all turn as the polygon does";
     }
+}
+
+TEST_F(Nff, AHoleMayHangOnABridge) {
+    const std::vector<glm::dvec2> square_in_square{{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0},
+                                                   {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}};
+    const Scene scene = scene_of(polygon_text(square_in_square));
+    EXPECT_NEAR(area(mesh_of(scene)), 16.0 - 4.0, 1e-6);
+    const Accel accel(std::make_shared<const Scene>(scene));
+    const auto is_hit = [&](float x, float y) {
+        Ray ray;
+        ray.origin = {x, y, 9};
+        ray.direction = {0, 0, -1};
+        return accel.occluded(ray);
+    };
+    EXPECT_FALSE(is_hit(2.0f, 2.0f));
+    EXPECT_TRUE(is_hit(0.5f, 2.0f));
+    EXPECT_TRUE(is_hit(2.0f, 3.5f));
+}
+
+TEST_F(Nff, SpiralsAndPolygonsTheOtherWayRoundKeepTheirArea) {
+    std::vector<glm::dvec2> spiral;
+    const auto wind = [&spiral](int i, double inwards) {
+        const double angle = 6.0 * std::numbers::pi * i / 200.0;
+        const double radius = 0.2 + 0.8 * i / 200.0 - inwards;
+        spiral.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+    };
+    for (int i = 0; i < 200; ++i)
+        wind(i, 0.0);
+    for (int i = 199; i >= 0; --i)
+        wind(i, 0.1);
+    EXPECT_NEAR(area(mesh_of(scene_of(polygon_text(spiral)))), outline_area(spiral), 1e-5);
+    std::reverse(spiral.begin(), spiral.end());
+    ASSERT_LT(outline_area(spiral), 0.0);
+    EXPECT_NEAR(area(mesh_of(scene_of(polygon_text(spiral)))), outline_area(spiral), 1e-5);
+}
+
+TEST_F(Nff, ConcavePatchesKeepTheirNormals) {
+    const Scene scene = scene_of(
+        "pp 6\n0 0 0 0 0 1\n2 0 0 1 0 1\n2 1 0 1 0 1\n1 1 0 0 0 1\n1 2 0 0 1 1\n"
+        "0 2 0 0 1 1\n");
+    const Mesh& mesh = mesh_of(scene);
+    EXPECT_EQ(mesh.triangles.size(), 4u);
+    EXPECT_NEAR(area(mesh), 3.0, 1e-6);
+    ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
+    const float half = std::sqrt(0.5f);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        const glm::vec3 p = mesh.positions[i];
+        const glm::vec3 expected(p.x > 1.5f ? half : 0.0f, p.y > 1.5f ? half : 0.0f,
+                                 p.x > 1.5f || p.y > 1.5f ? half : 1.0f);
+        EXPECT_LT(glm::length(mesh.normals[i] - expected), 1e-6f) << i;
+    }
+}
+
+TEST_F(Nff, TheLastBackgroundAndViewCountAndAllLights) {
+    const Scene scene = scene_of(
+        "l 1 1 1 1 0 0\nb 1 0 0\nv\nfrom 1 2 3\nat 0 0 0\nup 0 0 1\nangle 30\n"
+        "s 0 0 0 1\nl 2 2 2 0 1 0\nb 0 1 0\nv\nresolution 9 9\nhither 1\nangle 40\n"
+        "up 0 1 0\nat 0 0 0\nfrom 3 2 1\nl 3 3 3 0 0 1");
+    EXPECT_EQ(scene.background, glm::vec3(0, 1, 0));
+    ASSERT_EQ(scene.cameras.size(), 1u);
+    EXPECT_EQ(scene.cameras[0].camera.eye, glm::dvec3(3, 2, 1));
+    EXPECT_EQ(scene.cameras[0].camera.fovy, 40.0);
+    ASSERT_EQ(scene.lights.size(), 3u);
+    EXPECT_EQ(std::get<PointLight>(scene.lights[2]).colour, glm::vec3(0, 0, 1))
+        << "read without a line break at the end";
 }
 
 TEST_F(Nff, PlaneThroughThreePoints) {
