@@ -304,7 +304,7 @@ TEST(EmbreeOracle, Kitchen) {
         m.opacity = 1.0f;
         m.map(MapSlot::opacity) = {};
     }
-    compare(std::move(scene), "kitchen", kRays);
+    compare(scene, "kitchen", kRays);
 }
 
 TEST(EmbreeOracle, Spheres) {

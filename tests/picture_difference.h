@@ -15,9 +15,8 @@ inline Image shrunk(const Image& large, int n) {
     Image small = make_image({large.size.rows / n, large.size.cols / n});
     for (int row = 0; row < small.size.rows * n; ++row) {
         for (int col = 0; col < small.size.cols * n; ++col) {
-            const auto from = static_cast<std::size_t>(row * large.size.cols + col);
-            const auto to = static_cast<std::size_t>(row / n * small.size.cols + col / n);
-            small.colour[to] += large.colour[from] / static_cast<float>(n * n);
+            small.colour[small.size.index({row / n, col / n})] +=
+                large.colour[large.size.index({row, col})] / static_cast<float>(n * n);
         }
     }
     return small;

@@ -213,7 +213,7 @@ std::string spd_lattice() {
     constexpr double kGap = 0.99 * kSphere * 0.5;
     const std::vector<glm::dvec3> lights{{2.0, 0.5, 0.5},  {-1.0, 0.5, 0.5}, {0.5, 2.0, 0.5},
                                          {0.5, -1.0, 0.5}, {0.5, 0.5, 2.0},  {0.5, 0.5, -1.0}};
-    const double middle = (kCells / 2 + 0.5) * kCell;
+    const double middle = 6.5 * kCell;  // of the cell behind the middle
     std::string nff = head({{middle, 1.0, 1.0 - kCell / 2.0},
                             {middle, -1.0, -1.0 - kCell / 2.0},
                             {0.2, 1.0, 0.0},
