@@ -114,14 +114,66 @@ std::string background_text(const Scene& scene) {
     if (std::holds_alternative<std::monostate>(scene.environment)) {
         return fmt::format("background {{ rgb {} }}\n", text(scene.background));
     }
+    if (const auto* image = std::get_if<ImageSky>(&scene.environment)) {
+        // POV-Ray's images begin at +x and go round by +z.
+        if (image->up != glm::dvec3(0, 1, 0) || image->forward != glm::dvec3(-1, 0, 0) ||
+            image->scale != 1.0f) {
+            no_equivalent("a sky image that is not turned or scaled");
+        }
+        return "sky_sphere { pigment { image_map { ppm \"sky.ppm\" gamma 1.0 map_type 1 "
+               "interpolate 2 } } }\n";
+    }
     const auto* sky = std::get_if<GradientSky>(&scene.environment);
-    if (sky == nullptr) no_equivalent("an environment that is an image");
     // A gradient repeats itself from 0 to 1; ours goes from -1 to 1.
     return fmt::format(
         "sky_sphere {{ pigment {{ gradient {} color_map {{ [0 rgb {}] [0.5 rgb {}] "
         "[1 rgb {}] }} scale 2 translate {} }} }}\n",
         text(glm::normalize(sky->up)), text(sky->ground), text(sky->horizon), text(sky->zenith),
         text(-glm::normalize(sky->up)));
+}
+
+// --- Images -------------------------------------------------------------------------------------
+
+std::string texture_file(TextureId id) {
+    return fmt::format("texture{}.ppm", id);
+}
+
+// 16 bits a channel, linear. `texel` gives the colour, 0..1, of a row and a column.
+template <class Texel>
+void write_ppm(const std::filesystem::path& file, int rows, int cols, const Texel& texel) {
+    std::ofstream out(file, std::ios::binary);
+    out << "P6\n" << cols << ' ' << rows << "\n65535\n";
+    for (int row = 0; row < rows; ++row) {
+        for (int col = 0; col < cols; ++col) {
+            const glm::vec3 colour = texel(row, col);
+            for (int channel = 0; channel < 3; ++channel) {
+                const auto sample = std::lround(65535.0f * colour[channel]);
+                out.put(static_cast<char>(sample / 256)).put(static_cast<char>(sample % 256));
+            }
+        }
+    }
+}
+
+void write_images(const std::filesystem::path& folder, const Scene& scene) {
+    for (TextureId id = 0; id < scene.textures.size(); ++id) {
+        const auto* image = std::get_if<ImageTexture>(&scene.textures[id].source);
+        if (image == nullptr) continue;
+        const TexturePixels& pixels = *image->pixels;
+        const auto texel = [&pixels](int row, int col) {
+            const auto i = static_cast<std::size_t>(row * pixels.levels[0].cols + col);
+            const glm::vec3 stored = glm::vec3(glm::u8vec3(pixels.texels[i])) / 255.0f;
+            if (pixels.coding == TexelCoding::linear) return stored;
+            return glm::vec3(linear_from_srgb(stored.x), linear_from_srgb(stored.y),
+                             linear_from_srgb(stored.z));
+        };
+        write_ppm(folder / texture_file(id), pixels.levels[0].rows, pixels.levels[0].cols, texel);
+    }
+    if (const auto* sky = std::get_if<ImageSky>(&scene.environment)) {
+        const SkyPixels& pixels = *sky->pixels;
+        write_ppm(folder / "sky.ppm", pixels.rows, pixels.cols, [&pixels](int row, int col) {
+            return pixels.texels[static_cast<std::size_t>(row * pixels.cols + col)];
+        });
+    }
 }
 
 // --- Materials ----------------------------------------------------------------------------------
@@ -152,7 +204,10 @@ public:
 
     [[nodiscard]] std::string pigment() const {
         const TextureMap& map = material_.map(MapSlot::diffuse);
-        if (map) return checker(map);
+        if (map && std::holds_alternative<Checker>(scene_.textures[map.texture].source)) {
+            return checker(map);
+        }
+        if (map) return image(map);
         return fmt::format("pigment {{ rgbft {} }}", with_transmission(colour_));
     }
 
@@ -205,7 +260,6 @@ private:
     // POV-Ray's checker is one of cubes; made high, it is one of squares on the floor.
     [[nodiscard]] std::string checker(const TextureMap& map) const {
         const auto* squares = std::get_if<Checker>(&scene_.textures[map.texture].source);
-        if (squares == nullptr) no_equivalent("a texture that is an image");
         if (map.u_row.y != 0.0f || map.u_row.z != 0.0f || map.v_row.x != 0.0f ||
             map.v_row.z != 0.0f || material_.transmits()) {
             no_equivalent("a checker that is scaled only");
@@ -216,6 +270,18 @@ private:
             text(colour_ * glm::dvec3(squares->even)), text(colour_ * glm::dvec3(squares->odd)),
             1.0 / static_cast<double>(map.u_row.x), kHigh, 1.0 / static_cast<double>(map.v_row.y),
             text({0.0, -0.5 * kHigh, 0.0}));
+    }
+
+    // By the texture coordinates of a mesh.
+    [[nodiscard]] std::string image(const TextureMap& map) const {
+        TextureMap plain;
+        plain.texture = map.texture;
+        plain.filter = TextureFilter::nearest;
+        if (!(map == plain) || colour_ != glm::dvec3(1.0)) {
+            no_equivalent("an image as it is, with texels that don't blend, on white");
+        }
+        return fmt::format("pigment {{ uv_mapping image_map {{ ppm \"{}\" gamma 1.0 }} }}",
+                           texture_file(map.texture));
     }
 
     [[nodiscard]] std::string reflection() const {
@@ -269,6 +335,12 @@ std::string vector_list(const char* name, const Vertices& vertices) {
 std::string mesh_text(const Mesh& mesh) {
     std::string result = "mesh2 { " + vector_list("vertex_vectors", mesh.positions);
     if (!mesh.normals.empty()) result += vector_list("normal_vectors", mesh.normals);
+    if (!mesh.uvs.empty()) {
+        std::string uvs;
+        for (const glm::vec2& uv : mesh.uvs)
+            uvs += fmt::format(", <{}, {}>", uv.x, uv.y);
+        result += fmt::format("uv_vectors {{ {}{} }} ", mesh.uvs.size(), uvs);
+    }
     result += fmt::format("face_indices {{ {}", mesh.triangles.size());
     for (const glm::uvec3& t : mesh.triangles)
         result += fmt::format(", <{}, {}, {}>", t.x, t.y, t.z);
@@ -353,18 +425,19 @@ std::string object_text(const Scene& scene, const Object& object, bool shadows) 
 
 }  // namespace
 
-std::string pov_scene(const Scene& scene, const Camera& camera, ImageSize size,
-                      const RenderSettings& settings, int area_samples) {
-    std::string file = fmt::format(
+void write_pov_scene(const std::filesystem::path& folder, const Scene& scene, const Camera& camera,
+                     ImageSize size, const RenderSettings& settings, int area_samples) {
+    std::ofstream file(folder / "scene.pov");
+    file << fmt::format(
         "#version 3.7;\n"
         "global_settings {{ assumed_gamma 1 max_trace_level {} adc_bailout 0 }}\n",
         settings.depth);
-    file += camera_text(camera, size) + background_text(scene);
+    file << camera_text(camera, size) << background_text(scene);
     for (const Light& light : scene.lights)
-        file += std::visit(LightText{area_samples}, light);
+        file << std::visit(LightText{area_samples}, light);
     for (const Object& object : scene.objects)
-        file += object_text(scene, object, settings.shadows);
-    return file;
+        file << object_text(scene, object, settings.shadows);
+    write_images(folder, scene);
 }
 
 Image read_pov_picture(const std::filesystem::path& file) {

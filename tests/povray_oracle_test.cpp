@@ -10,8 +10,8 @@
 //   notes' rule what would have been transmitted (trace_test)
 //   glass in glass by Fresnel: POV-Ray 3.7 takes the index of the glass that a ray leaves for that
 //   of both sides, and so reflects nothing there; absorption of what is reflected inside: it leaves
-//   that out (NotAsInPovray, below)
-//   one-sided surfaces, filtered textures, lenses: POV-Ray has no such or random ones
+//   that out (glass_in_glass_test)
+//   one-sided surfaces, normal maps, filtered textures, lenses: POV-Ray has no such or random ones
 //
 // With the environment variable RAYPICK_PICTURES=FOLDER both pictures are kept there.
 #include "tests/model_files.h"
@@ -24,6 +24,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <glm/gtc/constants.hpp>
 
 #include <cmath>
 #include <cstdlib>
@@ -53,8 +54,7 @@ protected:
     // With `samples` x `samples` rays a pixel. Empty, with a test failure, if POV-Ray fails.
     Image by_povray(const View& view, int samples) {
         const ImageSize size{view.size.rows * samples, view.size.cols * samples};
-        write("scene.pov",
-              pov_scene(view.scene, view.camera, size, view.settings, view.area_samples));
+        write_pov_scene(folder_, view.scene, view.camera, size, view.settings, view.area_samples);
         // 16 bits, linear, nothing smoothed, no window, everything computed.
         const std::string command = fmt::format(
             "cd '{}' && povray +Iscene.pov +Oscene.ppm +W{} +H{} +FP16 File_Gamma=1.0 "
@@ -424,53 +424,53 @@ TEST_F(PovrayOracle, BlinnGlowAndOpacity) {
     compare(view);
 }
 
-// --- Where POV-Ray is wrong ---------------------------------------------------------------------
-
-// What arrives at (0, -9, 0) from straight above.
-float from_above(const Scene& scene, int depth) {
-    RenderSettings settings;
-    settings.depth = depth;
-    settings.cutoff = 0.0f;
-    RayCounts counts;
-    const Accel accel = accel_of(scene);
-    return trace(accel, scene.lights, settings, ray_towards({0, -9, 0}, {0, 0, 0}), counts)
-        .colour.x;
+// Squares of random colours; seen as sRGB.
+TextureId add_patchwork(Scene& scene, int rows, int cols) {
+    Random random(3);
+    std::vector<glm::u8vec4> texels;
+    for (int i = 0; i < rows * cols; ++i)
+        texels.emplace_back(random.below(256), random.below(256), random.below(256), 255);
+    Texture texture;
+    texture.source =
+        ImageTexture{make_texture_pixels(rows, cols, std::move(texels), TexelCoding::srgb), {}};
+    return add_texture(scene, std::move(texture));
 }
 
-// Reflectance at right angles: ((a - b) / (a + b))^2.
-double reflected(double a, double b) {
-    const double root = (a - b) / (a + b);
-    return root * root;
-}
-
-GradientSky half_white(float above, float below) {
-    GradientSky sky;
-    sky.zenith = glm::vec3(above);
-    sky.ground = glm::vec3(below);
+// Waves of colour in all directions.
+ImageSky coloured_sky() {
+    constexpr int kRows = 64;
+    std::vector<glm::vec3> texels;
+    for (int row = 0; row < kRows; ++row) {
+        for (int col = 0; col < 2 * kRows; ++col) {
+            const float up = (static_cast<float>(row) + 0.5f) / kRows;
+            const float around = glm::two_pi<float>() * (static_cast<float>(col) + 0.5f) / kRows;
+            texels.emplace_back(0.5f + 0.4f * std::sin(0.5f * around), 1.0f - up,
+                                0.5f + 0.4f * std::cos(around) * std::sin(3.0f * up));
+        }
+    }
+    ImageSky sky;
+    sky.pixels = make_sky_pixels(kRows, 2 * kRows, std::move(texels));
+    sky.forward = {-1.0, 0.0, 0.0};
     return sky;
 }
 
-// Through a ball in a ball: each of the four surfaces reflects its part.
-TEST(NotAsInPovray, LeavingGlassInGlassReflects) {
-    Scene scene;
-    scene.environment = half_white(1.0f, 0.0f);
-    place(scene, Sphere{{0, 0, 0}, 2.0}, add_material(scene, glass(1.3f, Reflectance::dielectric)));
-    place(scene, Sphere{{0, 0, 0}, 1.0}, add_material(scene, glass(2.0f, Reflectance::dielectric)));
-    const double once = (1.0 - reflected(1.0, 1.3)) * (1.0 - reflected(1.3, 2.0));
-    EXPECT_NEAR(from_above(scene, 5), once * once, 1e-5);
-}
-
-// A ball mirrors the light from below at its near side and, after twice the way through, at its far
-// side.
-TEST(NotAsInPovray, WhatIsReflectedInsideIsAbsorbedToo) {
-    Scene scene;
-    scene.environment = half_white(0.0f, 1.0f);
-    Material material = glass(1.5f, Reflectance::dielectric);
-    material.absorption = glm::vec3(0.3f);
-    place(scene, Sphere{{0, 0, 0}, 1.0}, add_material(scene, material));
-    const double r = reflected(1.0, 1.5);
-    const double inside = (1.0 - r) * (1.0 - r) * r * std::exp(-0.3 * 4.0);
-    EXPECT_NEAR(from_above(scene, 4), r + inside, 1e-5);
+TEST_F(PovrayOracle, Images) {
+    View view;
+    Scene& scene = view.scene;
+    view.camera = looking_down(6.0);
+    scene.environment = coloured_sky();
+    scene.lights.emplace_back(PointLight{"key", {4.0, 7.0, 5.0}, glm::vec3(0.9f), {}});
+    Material patched = matt(glm::vec3(1.0f));
+    patched.map(MapSlot::diffuse).texture = add_patchwork(scene, 7, 5);
+    patched.map(MapSlot::diffuse).filter = TextureFilter::nearest;
+    MeshData sheet;
+    sheet.positions = {{-3, 0, 2}, {3, 0, 2}, {3, 0, -2}, {-3, 0, -2}};
+    sheet.uvs = {{-0.3f, 0.1f}, {1.6f, 0.0f}, {1.7f, 1.2f}, {0.0f, 0.9f}};
+    sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+    place_mesh(scene, sheet, add_material(scene, patched));
+    place(scene, Sphere{{0.0, 1.0, 0.0}, 0.9},
+          add_material(scene, mirror(glm::vec3(0.9f), Reflectance::constant)));
+    compare(view);
 }
 
 }  // namespace
