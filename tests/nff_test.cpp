@@ -228,10 +228,10 @@ std::string polygon_text(const std::vector<glm::dvec2>& corners) {
 
 TEST_F(Nff, GearOf144CornersIsTriangulatedWithinItsOutline) {
     // 36 teeth of four corners each, the tooth's flanks radial: as concave as SPD's gears.
-    constexpr int kCorners = 144;
     std::vector<glm::dvec2> corners;
-    for (int i = 0; i < kCorners; ++i) {
-        const double angle = 2.0 * std::numbers::pi * (i / 2) / (kCorners / 2);
+    for (int i = 0; i < 144; ++i) {
+        const int flank = i / 2;
+        const double angle = 2.0 * std::numbers::pi * flank / 72.0;
         const double radius = ((i + 1) / 2) % 2 == 0 ? 1.0 : 0.8;
         corners.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
     }
@@ -315,7 +315,7 @@ TEST_F(Nff, TheLastBackgroundAndViewCountAndAllLights) {
 
 TEST_F(Nff, PlaneThroughThreePoints) {
     const Scene scene = scene_of("pl 12 12 -0.5 -12 12 -0.5 -12 -12 -0.5\n");
-    const Plane& plane = std::get<Plane>(scene.objects[0].shape);
+    const auto& plane = std::get<Plane>(scene.objects[0].shape);
     EXPECT_EQ(plane.normal, glm::dvec3(0, 0, 1));
     EXPECT_EQ(plane.d, 0.5);
 }

@@ -160,8 +160,9 @@ void write_images(const std::filesystem::path& folder, const Scene& scene) {
         if (image == nullptr) continue;
         const TexturePixels& pixels = *image->pixels;
         const auto texel = [&pixels](int row, int col) {
-            const auto i = static_cast<std::size_t>(row * pixels.levels[0].cols + col);
-            const glm::vec3 stored = glm::vec3(glm::u8vec3(pixels.texels[i])) / 255.0f;
+            const ImageSize size{pixels.levels[0].rows, pixels.levels[0].cols};
+            const glm::u8vec4& texel_bytes = pixels.texels[size.index({row, col})];
+            const glm::vec3 stored = glm::vec3(glm::u8vec3(texel_bytes)) / 255.0f;
             if (pixels.coding == TexelCoding::linear) return stored;
             return glm::vec3(linear_from_srgb(stored.x), linear_from_srgb(stored.y),
                              linear_from_srgb(stored.z));
@@ -171,7 +172,7 @@ void write_images(const std::filesystem::path& folder, const Scene& scene) {
     if (const auto* sky = std::get_if<ImageSky>(&scene.environment)) {
         const SkyPixels& pixels = *sky->pixels;
         write_ppm(folder / "sky.ppm", pixels.rows, pixels.cols, [&pixels](int row, int col) {
-            return pixels.texels[static_cast<std::size_t>(row * pixels.cols + col)];
+            return pixels.texels[ImageSize{pixels.rows, pixels.cols}.index({row, col})];
         });
     }
 }

@@ -427,9 +427,9 @@ TEST_F(PovrayOracle, BlinnGlowAndOpacity) {
 // Squares of random colours; seen as sRGB.
 TextureId add_patchwork(Scene& scene, int rows, int cols) {
     Random random(3);
-    std::vector<glm::u8vec4> texels;
-    for (int i = 0; i < rows * cols; ++i)
-        texels.emplace_back(random.below(256), random.below(256), random.below(256), 255);
+    std::vector<glm::u8vec4> texels(ImageSize{rows, cols}.pixel_count());
+    for (glm::u8vec4& texel : texels)
+        texel = glm::u8vec4(random.below(256), random.below(256), random.below(256), 255);
     Texture texture;
     texture.source =
         ImageTexture{make_texture_pixels(rows, cols, std::move(texels), TexelCoding::srgb), {}};
