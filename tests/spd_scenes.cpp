@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -237,6 +239,193 @@ std::string spd_lattice() {
             nff += fill(colour, {.diffuse = 0.99}) + cone(base, kCylinder, apex, kCylinder);
         }
     }
+    return nff;
+}
+
+// --- Teapot -------------------------------------------------------------------------------------
+
+namespace {
+
+constexpr int kCuts = 12;  // of a patch and of the floor, along each edge
+
+// Control points: patch[row][column]; s runs along the rows, t along the columns.
+using Patch = std::array<std::array<glm::dvec3, 4>, 4>;
+
+// A quarter of a ring around the z axis, as the control points of an arc. `side`: the arm that
+// makes the arc round.
+struct Ring {
+    double radius;
+    double z;
+    double side;
+};
+Ring ring(double radius, double z) {
+    return {radius, z, 0.56 * radius};
+}
+
+// Four quarters of the body of revolution of a profile; `turn` -1: clockwise seen from above.
+void add_revolved(std::vector<Patch>& patches, const std::array<Ring, 4>& profile, double turn) {
+    for (int quarter = 0; quarter < 4; ++quarter) {
+        const Transform place = rotate(turn * 90.0 * quarter, {0.0, 0.0, 1.0});
+        Patch patch;
+        for (std::size_t row = 0; row < 4; ++row) {
+            const auto [r, z, side] = profile[row];
+            patch[row] = {place.point({r, 0.0, z}), place.point({r, turn * side, z}),
+                          place.point({side, turn * r, z}), place.point({0.0, turn * r, z})};
+        }
+        patches.push_back(patch);
+    }
+}
+
+// A tube's cross-section in the plane y = 0: from the inner to the outer point, `half` as wide.
+struct Section {
+    glm::dvec2 inner;  // x, z
+    glm::dvec2 outer;
+    double half;
+};
+
+// The two halves of a tube, on either side of the plane y = 0.
+void add_tube(std::vector<Patch>& patches, std::span<const Section, 4> sections) {
+    Patch right;
+    Patch left;
+    for (std::size_t row = 0; row < 4; ++row) {
+        const Section& s = sections[row];
+        const auto inner = [&s](double y) { return glm::dvec3(s.inner.x, y, s.inner.y); };
+        const auto outer = [&s](double y) { return glm::dvec3(s.outer.x, y, s.outer.y); };
+        right[row] = {inner(0.0), inner(-s.half), outer(-s.half), outer(0.0)};
+        left[row] = {outer(0.0), outer(s.half), inner(s.half), inner(0.0)};
+    }
+    patches.push_back(right);
+    patches.push_back(left);
+}
+
+std::vector<Patch> teapot_patches() {
+    constexpr double kHandle = 0.3;
+    constexpr double kSpout = 0.66;
+    constexpr double kLip = 0.25;
+    constexpr double kMouth = 0.15;
+    const std::array<Section, 7> handle{{{{-1.6, 2.025}, {-1.5, 2.25}, kHandle},
+                                         {{-2.3, 2.025}, {-2.5, 2.25}, kHandle},
+                                         {{-2.7, 2.025}, {-3.0, 2.25}, kHandle},
+                                         {{-2.7, 1.8}, {-3.0, 1.8}, kHandle},
+                                         {{-2.7, 1.575}, {-3.0, 1.35}, kHandle},
+                                         {{-2.5, 1.125}, {-2.65, 0.9375}, kHandle},
+                                         {{-2.0, 0.9}, {-1.9, 0.6}, kHandle}}};
+    const std::array<Section, 7> spout{{{{1.7, 1.425}, {1.7, 0.6}, kSpout},
+                                        {{2.6, 1.425}, {3.1, 0.825}, kSpout},
+                                        {{2.3, 2.1}, {2.4, 2.025}, kLip},
+                                        {{2.7, 2.4}, {3.3, 2.4}, kLip},
+                                        {{2.8, 2.475}, {3.525, 2.49375}, kLip},
+                                        {{2.9, 2.475}, {3.45, 2.5125}, kMouth},
+                                        {{2.8, 2.4}, {3.2, 2.4}, kMouth}}};
+    std::vector<Patch> patches;
+    add_revolved(patches,
+                 {ring(1.4, 2.4), ring(1.3375, 2.53125), ring(1.4375, 2.53125), ring(1.5, 2.4)},
+                 -1.0);
+    add_revolved(patches, {ring(1.5, 2.4), ring(1.75, 1.875), ring(2.0, 1.35), ring(2.0, 0.9)},
+                 -1.0);
+    add_revolved(patches, {ring(2.0, 0.9), ring(2.0, 0.45), ring(1.5, 0.225), ring(1.5, 0.15)},
+                 -1.0);
+    for (const auto* tube : {&handle, &spout}) {
+        add_tube(patches, std::span(*tube).first<4>());
+        add_tube(patches, std::span(*tube).last<4>());
+    }
+    add_revolved(patches, {ring(0.0, 3.15), {0.8, 3.15, 0.45}, ring(0.0, 2.85), ring(0.2, 2.7)},
+                 -1.0);
+    add_revolved(patches, {ring(0.2, 2.7), ring(0.4, 2.55), ring(1.3, 2.55), ring(1.3, 2.4)}, -1.0);
+    add_revolved(patches, {ring(0.0, 0.0), ring(1.425, 0.0), ring(1.5, 0.075), ring(1.5, 0.15)},
+                 1.0);
+    return patches;
+}
+
+// Bernstein's polynomials of degree 3 and their derivatives.
+std::array<double, 4> bernstein(double t) {
+    const double u = 1.0 - t;
+    return {u * u * u, 3.0 * t * u * u, 3.0 * t * t * u, t * t * t};
+}
+std::array<double, 4> bernstein_slope(double t) {
+    const double u = 1.0 - t;
+    return {-3.0 * u * u, 3.0 * u * u - 6.0 * t * u, 6.0 * t * u - 3.0 * t * t, 3.0 * t * t};
+}
+
+glm::dvec3 weighted(const Patch& patch, const std::array<double, 4>& s,
+                    const std::array<double, 4>& t) {
+    glm::dvec3 sum(0.0);
+    for (std::size_t row = 0; row < 4; ++row) {
+        for (std::size_t col = 0; col < 4; ++col)
+            sum += s[row] * t[col] * patch[row][col];
+    }
+    return sum;
+}
+
+struct PatchPoint {
+    glm::dvec3 position;
+    glm::dvec3 normal;
+};
+
+PatchPoint patch_point(const Patch& patch, double s, double t) {
+    const glm::dvec3 p = weighted(patch, bernstein(s), bernstein(t));
+    const glm::dvec3 along_s = weighted(patch, bernstein_slope(s), bernstein(t));
+    const glm::dvec3 along_t = weighted(patch, bernstein(s), bernstein_slope(t));
+    const glm::dvec3 normal = glm::cross(along_t, along_s);
+    const double length = glm::length(normal);
+    if (length > 1e-12) return {p, normal / length};
+    return {p, {0.0, 0.0, p.z > 1.5 ? 1.0 : -1.0}};  // the middle of the lid or of the bottom
+}
+
+bool is_on_the_axis(const PatchPoint& point) {
+    return std::abs(point.position.x) < 1e-4 && std::abs(point.position.y) < 1e-4;
+}
+
+std::string patch_triangles(const Patch& patch) {
+    std::string nff;
+    for (int i = 0; i < kCuts * kCuts; ++i) {
+        const int row = i / kCuts;
+        const int col = i % kCuts;
+        const auto at = [&](int ds, int dt) {
+            return patch_point(patch, static_cast<double>(row + ds) / kCuts,
+                               static_cast<double>(col + dt) / kCuts);
+        };
+        const std::array<PatchPoint, 4> corners{at(0, 0), at(0, 1), at(1, 1), at(1, 0)};
+        for (const std::size_t first : {0u, 2u}) {
+            const std::array<PatchPoint, 3> triangle{corners[first], corners[first + 1],
+                                                     corners[(first + 2) % 4]};
+            // Two corners in the middle of lid or bottom: no triangle.
+            if (std::count_if(triangle.begin(), triangle.end(), is_on_the_axis) > 1) continue;
+            nff += "pp 3\n";
+            for (const PatchPoint& corner : triangle)
+                nff += text(corner.position) + ' ' + text(corner.normal) + '\n';
+        }
+    }
+    return nff;
+}
+
+std::string board_squares(int odd) {
+    std::string nff;
+    const double side = 8.0 / kCuts;
+    for (int i = 0; i < kCuts * kCuts; ++i) {
+        const int x = i / kCuts;
+        const int y = i % kCuts;
+        if ((x + y) % 2 != odd) continue;
+        const glm::dvec3 corner(x * side - 4.0, y * side - 4.0, 0.0);
+        const std::vector<glm::dvec3> square{corner, corner + glm::dvec3(side, 0.0, 0.0),
+                                             corner + glm::dvec3(side, side, 0.0),
+                                             corner + glm::dvec3(0.0, side, 0.0)};
+        nff += polygon(square);
+    }
+    return nff;
+}
+
+}  // namespace
+
+std::string spd_teapot() {
+    const std::vector<glm::dvec3> lights{{-3.1, 9.8, 12.1}, {11.3, 5.1, 8.8}};
+    std::string nff = head({{4.86, 7.2, 5.4}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 45.0}, lights);
+    const Fill board{.diffuse = 0.5, .specular = 0.5, .shine = shine_of(30.0)};
+    nff += fill(glm::dvec3(1.0), board) + board_squares(1);
+    nff += fill(glm::dvec3(0.5), board) + board_squares(0);
+    nff += fill({1.0, 0.5, 0.1}, {.diffuse = 0.75, .specular = 0.25, .shine = shine_of(37.0)});
+    for (const Patch& patch : teapot_patches())
+        nff += patch_triangles(patch);
     return nff;
 }
 

@@ -19,4 +19,8 @@ std::string spd_tree();
 // Costa. Six lights.
 std::string spd_lattice();
 
+// Newell's teapot of 32 Bezier patches, each cut into 12 x 12 x 2 smooth triangles, on a mirroring
+// checkerboard of 12 x 12 squares. Two lights.
+std::string spd_teapot();
+
 }  // namespace raypick
