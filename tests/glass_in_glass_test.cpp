@@ -1,5 +1,6 @@
 // Light through and from glass in glass, by hand: what is not held against POV-Ray's pictures
 // (povray_oracle_test), for POV-Ray 3.7 gets it wrong.
+#include "tests/looks.h"
 #include "tests/tracer_scenes.h"
 #include "tracer/shade/trace.h"
 
@@ -9,15 +10,6 @@
 
 namespace raypick {
 namespace {
-
-Material glass(float ior) {
-    Material material = black_material();
-    material.transmit = glm::vec3(1.0f);
-    material.reflect = glm::vec3(1.0f);
-    material.ior = ior;
-    material.reflectance = Reflectance::dielectric;
-    return material;
-}
 
 // What arrives at (0, -9, 0) from straight above.
 float from_above(const Scene& scene, int depth) {
@@ -47,8 +39,8 @@ GradientSky half_white(float above, float below) {
 TEST(GlassInGlass, EachSurfaceReflects) {
     Scene scene;
     scene.environment = half_white(1.0f, 0.0f);
-    place(scene, Sphere{{0, 0, 0}, 2.0}, add_material(scene, glass(1.3f)));
-    place(scene, Sphere{{0, 0, 0}, 1.0}, add_material(scene, glass(2.0f)));
+    place(scene, Sphere{{0, 0, 0}, 2.0}, add_material(scene, glass(1.3f, Reflectance::dielectric)));
+    place(scene, Sphere{{0, 0, 0}, 1.0}, add_material(scene, glass(2.0f, Reflectance::dielectric)));
     const double once = (1.0 - reflected(1.0, 1.3)) * (1.0 - reflected(1.3, 2.0));
     EXPECT_NEAR(from_above(scene, 5), once * once, 1e-5);
 }
@@ -58,7 +50,7 @@ TEST(GlassInGlass, EachSurfaceReflects) {
 TEST(GlassInGlass, WhatIsReflectedInsideIsAbsorbedToo) {
     Scene scene;
     scene.environment = half_white(0.0f, 1.0f);
-    Material material = glass(1.5f);
+    Material material = glass(1.5f, Reflectance::dielectric);
     material.absorption = glm::vec3(0.3f);
     place(scene, Sphere{{0, 0, 0}, 1.0}, add_material(scene, material));
     const double r = reflected(1.0, 1.5);

@@ -36,16 +36,27 @@ double grey(const glm::vec3& colour, const char* what) {
 
 // --- Camera, lights, background -----------------------------------------------------------------
 
+// With many rays a pixel, all of them traced. POV-Ray's samples lie on a disk of a quarter of its
+// "aperture" (tracepixel.cpp), ours on one of half of the lens's diameter.
+std::string lens_text(const Camera& camera, const RenderSettings& settings) {
+    if (settings.aperture == 0.0) return "";
+    const glm::dvec3 focus = camera.eye - settings.focus_distance * camera_frame(camera).vz;
+    return fmt::format(
+        " aperture {:.17g} focal_point {} blur_samples 512 variance 0 confidence 0.999",
+        2.0 * settings.aperture, text(focus));
+}
+
 // Explicit vectors, so that POV-Ray's left-handed default doesn't come in.
-std::string camera_text(const Camera& camera, ImageSize size) {
+std::string camera_text(const Camera& camera, ImageSize size, const RenderSettings& settings) {
     const CameraFrame frame = camera_frame(camera);
     const bool orthographic = camera.projection == Projection::orthographic;
     const double height =
         orthographic ? camera.height : 2.0 * std::tan(glm::radians(camera.fovy) / 2.0);
     const double aspect = static_cast<double>(size.cols) / size.rows;
-    return fmt::format("camera {{ {} location {} direction {} right {} up {} }}\n",
+    return fmt::format("camera {{ {} location {} direction {} right {} up {}{} }}\n",
                        orthographic ? "orthographic" : "perspective", text(camera.eye),
-                       text(-frame.vz), text(height * aspect * frame.vx), text(height * frame.vy));
+                       text(-frame.vz), text(height * aspect * frame.vx), text(height * frame.vy),
+                       lens_text(camera, settings));
 }
 
 struct Fade {
@@ -88,8 +99,13 @@ struct LightText {
         return lamp(light.position, light.colour, light.attenuation, cone);
     }
 
-    std::string operator()(const SphereLight&) const {
-        no_equivalent("a sphere light: POV-Ray's circular ones spread another way");
+    // A disk that turns to what it shines on.
+    std::string operator()(const SphereLight& light) const {
+        const double across = 2.0 * light.radius * (1.0 - 1.0 / area_samples);
+        const std::string disk = fmt::format(
+            " area_light {}, {}, {}, {} circular orient area_illumination on",
+            text({across, 0.0, 0.0}), text({0.0, 0.0, across}), area_samples, area_samples);
+        return lamp(light.centre, light.colour, light.attenuation, disk);
     }
 
     // POV-Ray's grid goes from edge to edge; shrunk, its points are at the cells' centres.
@@ -433,7 +449,7 @@ void write_pov_scene(const std::filesystem::path& folder, const Scene& scene, co
         "#version 3.7;\n"
         "global_settings {{ assumed_gamma 1 max_trace_level {} adc_bailout 0 }}\n",
         settings.depth);
-    file << camera_text(camera, size) << background_text(scene);
+    file << camera_text(camera, size, settings) << background_text(scene);
     for (const Light& light : scene.lights)
         file << std::visit(LightText{area_samples}, light);
     for (const Object& object : scene.objects)

@@ -2,8 +2,7 @@
 // difference below 1 % of full scale, 99 % of the pixels within 4 % of it in every channel.
 //
 // Left out, because the two differ by definition; in brackets the tests by closed form:
-//   the soft edge of spot lights, a cubic there, glTF's square here; sphere lights, for POV-Ray's
-//   circular ones are not spread evenly (light_forms_test)
+//   the soft edge of spot lights, a cubic there, glTF's square here (light_forms_test)
 //   thin-walled sheets, priorities of overlapping glass, glass that blocks light: POV-Ray has none
 //   (glass_forms_test)
 //   total reflection in glass of constant coefficients: POV-Ray reflects all of the light, the
@@ -11,9 +10,10 @@
 //   glass in glass by Fresnel: POV-Ray 3.7 takes the index of the glass that a ray leaves for that
 //   of both sides, and so reflects nothing there; absorption of what is reflected inside: it leaves
 //   that out (glass_in_glass_test)
-//   one-sided surfaces, normal maps, filtered textures, lenses: POV-Ray has no such or random ones
+//   one-sided surfaces, normal maps, filtered textures: POV-Ray has none
 //
 // With the environment variable RAYPICK_PICTURES=FOLDER both pictures are kept there.
+#include "tests/looks.h"
 #include "tests/model_files.h"
 #include "tests/needs.h"
 #include "tests/picture_difference.h"
@@ -103,36 +103,6 @@ private:
 };
 
 // --- Scenes -------------------------------------------------------------------------------------
-
-Material matt(const glm::vec3& colour) {
-    Material material = black_material();
-    material.ambient = colour;
-    material.diffuse = colour;
-    return material;
-}
-
-Material shiny(const glm::vec3& colour, float specular, float shininess) {
-    Material material = matt(colour);
-    material.specular = glm::vec3(specular);
-    material.shininess = shininess;
-    return material;
-}
-
-Material mirror(const glm::vec3& reflect, Reflectance reflectance) {
-    Material material = black_material();
-    material.reflect = reflect;
-    material.reflectance = reflectance;
-    return material;
-}
-
-Material glass(float ior, Reflectance reflectance) {
-    Material material = black_material();
-    material.transmit = glm::vec3(1.0f);
-    if (reflectance == Reflectance::dielectric) material.reflect = glm::vec3(1.0f);
-    material.ior = ior;
-    material.reflectance = reflectance;
-    return material;
-}
 
 // From the front, right and above.
 Camera looking_down(double distance = 7.0) {
@@ -313,6 +283,38 @@ TEST_F(PovrayOracle, AreaLight) {
           add_material(scene, shiny({0.2f, 0.4f, 0.7f}, 0.3f, 15.0f)));
     place(scene, Box{{0.6, 0.0, 0.2}, {1.4, 1.0, 1.0}},
           add_material(scene, matt({0.8f, 0.4f, 0.2f})), rotate(20.0, {0.0, 1.0, 0.0}));
+    compare(view);
+}
+
+TEST_F(PovrayOracle, SphereLight) {
+    View view = on_a_floor();
+    Scene& scene = view.scene;
+    view.size = {75, 100};
+    SphereLight lamp;
+    lamp.centre = {2.0, 4.0, 1.5};
+    lamp.radius = 0.9;
+    lamp.colour = {0.7f, 0.85f, 0.9f};
+    lamp.samples = 16;
+    scene.lights = {lamp};
+    place(scene, Sphere{{-0.9, 1.0, 0.0}, 0.8},
+          add_material(scene, shiny({0.7f, 0.4f, 0.2f}, 0.3f, 15.0f)));
+    place(scene, Box{{0.6, 0.0, 0.2}, {1.4, 1.0, 1.0}},
+          add_material(scene, matt({0.2f, 0.4f, 0.8f})), rotate(20.0, {0.0, 1.0, 0.0}));
+    compare(view);
+}
+
+TEST_F(PovrayOracle, Lens) {
+    View view = on_a_floor({0.5f, 0.6f, 0.5f});
+    Scene& scene = view.scene;
+    view.size = {60, 80};
+    view.camera.fovy = 25.0;
+    place(scene, Sphere{{-0.8, 0.6, 1.6}, 0.6}, add_material(scene, matt({0.8f, 0.3f, 0.2f})));
+    place(scene, Sphere{{0.3, 0.7, -0.2}, 0.7}, add_material(scene, matt({0.3f, 0.7f, 0.3f})));
+    place(scene, Sphere{{1.2, 0.8, -2.8}, 0.8}, add_material(scene, matt({0.2f, 0.3f, 0.8f})));
+    view.settings.aperture = 1.2;
+    view.settings.focus_distance = 7.0;
+    view.settings.sampling = Sampling::stratified;
+    view.settings.samples = 16;
     compare(view);
 }
 
