@@ -431,8 +431,10 @@ struct ShapeText {
 // An object of one material.
 std::string object_text(const Scene& scene, const Object& object, bool shadows) {
     if (object.sides != Sides::both) no_equivalent("an object that is seen from both sides");
-    if (object.material == kNoMaterial) no_equivalent("an object of one material");
-    const MaterialText look(scene, material(scene, object.material));
+    if (object.material == kNoMaterial && parts_of(scene, object.shape).size() != 1) {
+        no_equivalent("an object of one material");
+    }
+    const MaterialText look(scene, material(scene, material_id(scene, object, 0)));
     std::string result = std::visit(ShapeText{scene}, object.shape);
     if (!object.world_from_object.is_identity())
         result += ShapeText::matrix(object.world_from_object);

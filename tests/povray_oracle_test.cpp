@@ -170,6 +170,17 @@ TEST_F(PovrayOracle, Sphereflake) {
     compare(view);
 }
 
+TEST_F(PovrayOracle, SpdBalls) {
+    RAYPICK_REQUIRE_MODEL("spd/balls.nff");
+    View view;
+    view.size = {150, 150};
+    view.scene = load_scene(model("spd/balls.nff")).scene;
+    view.camera = choose_camera(view.scene, view.size, {});
+    for (Object& object : view.scene.objects)
+        object.sides = Sides::both;
+    compare(view);
+}
+
 TEST_F(PovrayOracle, Mirrors) {
     View view = on_a_floor({0.6f, 0.5f, 0.3f});
     Scene& scene = view.scene;
