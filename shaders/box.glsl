@@ -19,8 +19,10 @@ void set_box_frame(inout Surface s, vec3 p, int axis) {
     vec3 along_j = vec3(0.0);
     along_i[i] = extent[i];
     along_j[j] = extent[j];
-    vec3 at = clamp((p - box_min) / extent, 0.0, 1.0);
-    set_texture_frame(s, vec2(at[i], at[j]), along_i, along_j);
+    // Along an axis on which the box is flat there is nothing to share.
+    vec2 size = vec2(extent[i], extent[j]);
+    vec2 at = clamp(vec2(p[i] - box_min[i], p[j] - box_min[j]) / max(size, 1e-37), 0.0, 1.0);
+    set_texture_frame(s, mix(vec2(0.0), at, greaterThan(size, vec2(0.0))), along_i, along_j);
 }
 #endif
 

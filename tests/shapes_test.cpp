@@ -522,6 +522,32 @@ TEST(BoxShape, FromInside) {
     EXPECT_FALSE(front(hits[0], ray));
 }
 
+// Flat along one axis: a face seen straight on, and its rim seen from the side.
+TEST(BoxShape, FlatAlongAnAxis) {
+    for (int flat = 0; flat < 3; ++flat) {
+        Box box{{-1, -2, -3}, {1, 2, 3}};
+        box.min[flat] = box.max[flat] = 0.5;
+        for (int axis = 0; axis < 3; ++axis) {
+            SCOPED_TRACE(testing::Message() << "flat " << flat << " along " << axis);
+            glm::dvec3 origin(0.5);
+            origin[axis] = 10.0;
+            glm::dvec3 direction(0.0);
+            direction[axis] = -1.0;
+            const auto hits = ahead(box, {origin, direction});
+            ASSERT_EQ(hits.size(), 2u);
+            EXPECT_NEAR(hits[0].t, 10.0 - box.max[axis], 1e-14);
+            for (const ShapeHit& hit : hits) {
+                const std::array<int, 2> across{(axis + 1) % 3, (axis + 2) % 3};
+                for (int k = 0; k < 2; ++k) {
+                    const int other = across[static_cast<std::size_t>(k)];
+                    const double share = (0.5 - box.min[other]) / (box.max[other] - box.min[other]);
+                    EXPECT_NEAR(hit.uv[k], other == flat ? 0.0 : share, 1e-14);
+                }
+            }
+        }
+    }
+}
+
 TEST(BoxShape, Misses) {
     EXPECT_TRUE(ahead(Box{}, {{0.6, 0, 5}, {0, 0, -1}}).empty());
     EXPECT_TRUE(ahead(Box{}, {{0, 0, 5}, {0, 0, 1}}).empty());

@@ -34,6 +34,12 @@ glm::dvec2 plane_uv(const Plane& plane, const glm::dvec3& p) {
     return n.y >= n.z ? glm::dvec2(p.x, p.z) : glm::dvec2(p.x, p.y);
 }
 
+// How far along an axis of the box the point lies, 0 to 1; 0 along one on which the box is flat.
+double box_share(const Box& box, const glm::dvec3& p, int axis) {
+    const double extent = box.max[axis] - box.min[axis];
+    return extent > 0.0 ? std::clamp((p[axis] - box.min[axis]) / extent, 0.0, 1.0) : 0.0;
+}
+
 ShapeHit box_hit(const Box& box, const ObjectRay& ray, double t, int axis, bool upper) {
     ShapeHit hit;
     hit.t = t;
@@ -42,8 +48,7 @@ ShapeHit box_hit(const Box& box, const ObjectRay& ray, double t, int axis, bool 
     const glm::dvec3 p = ray.origin + t * ray.direction;
     const int i = (axis + 1) % 3;
     const int j = (axis + 2) % 3;
-    hit.uv = {std::clamp((p[i] - box.min[i]) / (box.max[i] - box.min[i]), 0.0, 1.0),
-              std::clamp((p[j] - box.min[j]) / (box.max[j] - box.min[j]), 0.0, 1.0)};
+    hit.uv = {box_share(box, p, i), box_share(box, p, j)};
     return hit;
 }
 
