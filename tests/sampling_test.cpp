@@ -2,11 +2,11 @@
 #include "tests/random.h"
 #include "tests/tracer_scenes.h"
 #include "tracer/error.h"
+#include "tracer/geometry/unit_disk.h"
 #include "tracer/render/pixel_filter.h"
 #include "tracer/render/render_job.h"
 #include "tracer/render/sampling_pattern.h"
 #include "tracer/render/tiles.h"
-#include "tracer/shade/light_sample.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "tracer/render/sampling_pattern.h"
 
-#include "tracer/shade/light_sample.h"
+#include "tracer/geometry/unit_disk.h"
 #include "tracer/shade/random.h"
 
 #include <cmath>

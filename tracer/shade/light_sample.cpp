@@ -1,11 +1,13 @@
 #include "tracer/shade/light_sample.h"
 
+#include "tracer/geometry/unit_disk.h"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <glm/vec2.hpp>
 
 #include <cmath>
-#include <numbers>
 
 namespace raypick {
 
@@ -103,16 +105,6 @@ int sample_count(const Light& light) {
 LightSample light_sample(const Light& light, const glm::dvec3& from, int index,
                          RandomSequence& random) {
     return std::visit(SampleOf{from, index, random}, light);
-}
-
-glm::dvec2 disk_from_square(const glm::dvec2& square) {
-    const glm::dvec2 p = 2.0 * square - 1.0;
-    if (p == glm::dvec2(0.0)) return p;
-    const bool across = std::abs(p.x) > std::abs(p.y);
-    const double radius = across ? p.x : p.y;
-    const double angle = across ? std::numbers::pi / 4 * (p.y / p.x)
-                                : std::numbers::pi / 2 - std::numbers::pi / 4 * (p.x / p.y);
-    return radius * glm::dvec2(std::cos(angle), std::sin(angle));
 }
 
 PlaneAxes axes_across(const glm::dvec3& normal) {

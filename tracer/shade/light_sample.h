@@ -1,12 +1,11 @@
 // Lights as a lit point sees them: one point of the light at a time.
 //
-// The GLSL twin is in shaders/local_light.glsl; it takes the centres of the cells.
+// The GLSL twin is in shaders/lights.glsl; it takes the centres of the cells.
 #pragma once
 
 #include "tracer/scene/light.h"
 #include "tracer/shade/random.h"
 
-#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <limits>
@@ -28,10 +27,6 @@ int sample_count(const Light& light);
 // of the light's. A single sample is at the centre; it and other lights draw nothing from `random`.
 LightSample light_sample(const Light& light, const glm::dvec3& from, int index,
                          RandomSequence& random);
-
-// Maps the unit square to the unit disk, the middle to the centre, equal areas to equal areas.
-// Source: Shirley, Chiu, "A Low Distortion Map Between Disk and Square", JGT 2(3), 1997.
-glm::dvec2 disk_from_square(const glm::dvec2& square);
 
 // Two unit vectors perpendicular to a unit vector and to each other. Source: Duff et al., "Building
 // an Orthonormal Basis, Revisited", JCGT 6(1), 2017.

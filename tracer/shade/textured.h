@@ -36,7 +36,7 @@ SurfaceMaterial textured(const Scene& scene, const Material& material, const Sur
 //   normalize(gain x T + gain y B + z N), (x, y, z) = 2 texel - 1,
 // with T = dpdu made perpendicular to N and B = dpdv made perpendicular to N and T, both unit.
 // N itself without a map, and where dpdu and dpdv span no plane. Scene space. The GLSL twin is
-// mapped_normal() in shaders/texture.glsl.
+// mapped_normal() in shaders/normal_map.glsl.
 glm::vec3 mapped_normal(const Scene& scene, const Material& material, const SurfacePoint& surface,
                         const glm::vec3& direction, float width);
 
