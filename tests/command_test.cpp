@@ -1,14 +1,12 @@
 // The real program, headless, on small files that the tests write.
-#include "program.h"
+#include "command_fixture.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <csignal>
 #include <fstream>
-#include <sstream>
 
 namespace raypick {
 namespace {
@@ -19,58 +17,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
-
-// Two squares across the z axis, 2 x 2 at z = 0 and 4 x 4 at z = -1, seen from (0, 0, 5): the
-// near one covers the middle, the far one stands out around it, then comes background.
-constexpr const char* kSquares =
-    "o near\n"
-    "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n"
-    "f 1 2 3 4\n"
-    "o far\n"
-    "v -2 -2 -1\nv 2 -2 -1\nv 2 2 -1\nv -2 2 -1\n"
-    "f 5 6 7 8\n";
-
-class CommandTest : public testing::Test {
-protected:
-    [[nodiscard]] std::vector<std::string> pick(std::vector<std::string> more) const {
-        return command("pick", std::move(more));
-    }
-    [[nodiscard]] std::vector<std::string> render(std::vector<std::string> more) const {
-        return command("render", std::move(more));
-    }
-    // The command on the squares, seen from the front.
-    [[nodiscard]] std::vector<std::string> command(const std::string& name,
-                                                   std::vector<std::string> more) const {
-        std::vector<std::string> words = {name, squares_.string(), "--eye=0,0,5", "--look-at=0,0,0",
-                                          "--fovy=60"};
-        words.insert(words.end(), more.begin(), more.end());
-        return words;
-    }
-
-    TemporaryFolder folder_;
-    std::filesystem::path squares_ = folder_.write("squares.obj", kSquares);
-};
-
-std::vector<json> json_lines(const std::string& text) {
-    std::vector<json> values;
-    std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);)
-        values.push_back(json::parse(line));
-    return values;
-}
-
-std::size_t line_count(const std::string& text) {
-    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-}
-
-// One line "raypick: ..." on standard error, nothing on standard output.
-void expect_refusal(const ProgramResult& result, int exit_code, const std::string& part) {
-    EXPECT_EQ(result.exit_code, exit_code) << result.err;
-    EXPECT_THAT(result.out, IsEmpty());
-    EXPECT_THAT(result.err, StartsWith("raypick: "));
-    EXPECT_THAT(result.err, HasSubstr(part));
-    EXPECT_EQ(line_count(result.err), 1u) << result.err;
-}
 
 TEST_F(CommandTest, HelpAndVersionGoToStandardOutput) {
     const std::vector<std::vector<std::string>> questions = {
@@ -392,74 +338,6 @@ TEST_F(CommandTest, UnreadableFilesAreOneLineAndExit1AndWriteNothing) {
     EXPECT_EQ(read_file(output), before);
 }
 
-TEST_F(CommandTest, RenderWritesPngAndExr) {
-    const std::string png = (folder_ / "a.png").string();
-    const std::string exr = (folder_ / "a.EXR").string();
-    EXPECT_EQ(run_program(render({"--resolution=64,48", "--output=" + png})).exit_code, 0);
-    EXPECT_EQ(run_program(render({"--resolution=64,48", "--output=" + exr})).exit_code, 0);
-    const std::string bytes = read_file(png);
-    EXPECT_THAT(bytes, StartsWith("\x89PNG\r\n\x1a\n"));
-    EXPECT_EQ(bytes.substr(16, 8), std::string("\0\0\0\x40\0\0\0\x30", 8)) << "64 x 48";
-    EXPECT_THAT(read_file(exr), StartsWith("\x76\x2f\x31\x01"));
-    EXPECT_THAT(folder_.names(), ElementsAre("a.EXR", "a.png", "squares.obj"));
-}
-
-TEST_F(CommandTest, RenderWritesPngToStandardOutput) {
-    const ProgramResult result = run_program(render({"--resolution=64,48", "--output=-"}));
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_THAT(result.out, StartsWith("\x89PNG\r\n\x1a\n"));
-    EXPECT_THAT(result.err, IsEmpty());
-    const std::string png = (folder_ / "a.png").string();
-    run_program(render({"--resolution=64,48", "--output=" + png}));
-    EXPECT_EQ(read_file(png), result.out);
-}
-
-TEST_F(CommandTest, StatsAreOneJsonObjectWithTheDocumentedKeys) {
-    const ProgramResult result = run_program(
-        render({"--resolution=64,48", "--output=" + (folder_ / "a.png").string(), "--stats=json"}));
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    ASSERT_EQ(line_count(result.out), 1u);
-    const json stats = json::parse(result.out);
-    for (const char* key : {"load", "build", "trace"}) {
-        EXPECT_TRUE(stats["seconds"][key].is_number()) << key;
-        EXPECT_GE(stats["seconds"][key].get<double>(), 0.0) << key;
-    }
-    for (const char* key :
-         {"eye", "eye_hits", "reflection", "refraction", "shadow", "shadow_blocked"}) {
-        EXPECT_TRUE(stats["rays"][key].is_number_unsigned()) << key;
-    }
-    EXPECT_EQ(stats["rays"]["eye"], 64 * 48);
-    EXPECT_GT(stats["rays"]["eye_hits"].get<int>(), 0);
-    EXPECT_EQ(stats["objects"], 2);
-    EXPECT_EQ(stats["triangles"], 4);
-    EXPECT_EQ(stats["primitives"], 4);
-    for (const auto& [key, value] : stats["memory_bytes"].items()) {
-        EXPECT_TRUE(value.is_number_unsigned()) << key;
-    }
-    EXPECT_GT(stats["memory_bytes"]["peak"].get<double>(), 1e6);
-}
-
-TEST_F(CommandTest, SamplingIsWhatTheOptionsSay) {
-    const std::string output = "--output=" + (folder_ / "a.png").string();
-    const auto stats = [&](const std::vector<std::string>& options) {
-        std::vector<std::string> words = {"--resolution=20,10", output, "--stats=json"};
-        words.insert(words.end(), options.begin(), options.end());
-        return json::parse(run_program(render(words)).out);
-    };
-    EXPECT_EQ(stats({})["rays"]["eye"], 200);
-    EXPECT_EQ(stats({"--sampling=corners"})["rays"]["eye"], 21 * 11);
-    EXPECT_EQ(stats({"--samples=3"})["rays"]["eye"], 9 * 200);
-    EXPECT_EQ(stats({"--filter=tent"})["rays"]["eye"], 16 * 200);
-    EXPECT_EQ(stats({"--aperture=0.1", "--samples=2"})["rays"]["eye"], 4 * 200);
-    const int adaptive = stats({"--contrast=0.1", "--samples=2"})["rays"]["eye"].get<int>();
-    EXPECT_GT(adaptive, 200);
-    EXPECT_LT(adaptive, 5 * 200);
-    EXPECT_EQ(stats({})["nan_pixels"], 0);
-    const json by_depth = stats({"--depth=3"})["rays"]["by_depth"];
-    for (const char* kind : {"reflection", "refraction", "shadow"})
-        EXPECT_EQ(by_depth[kind].size(), 3u) << kind;
-}
-
 // At a height of 10 over 10 rows a pixel is a unit: the near square's half width of 1 and the far
 // one's of 2 are seen in their true size.
 TEST_F(CommandTest, PicksInAnOrthographicView) {
@@ -476,54 +354,6 @@ TEST_F(CommandTest, PicksInAnOrthographicView) {
     EXPECT_EQ(object("--orthographic=10", "2,5"), "");
     // What is looked at keeps the size that it has at fovy 60 from a distance of 5.
     EXPECT_EQ(object("--orthographic=5.773502691896258", "3,3"), object("--orthographic", "3,3"));
-}
-
-TEST_F(CommandTest, ShadowsCanBeLeftOut) {
-    const std::string output = "--output=" + (folder_ / "a.png").string();
-    const auto stats = [&](const std::string& option) {
-        return json::parse(
-            run_program(render({"--resolution=64,48", output, "--stats=json", option})).out);
-    };
-    EXPECT_GT(stats("--threads=1")["rays"]["shadow"].get<int>(), 0);
-    EXPECT_EQ(stats("--no-shadows")["rays"]["shadow"], 0);
-}
-
-TEST_F(CommandTest, TheImageDoesNotDependOnTheNumberOfThreads) {
-    const auto image = [&](const std::string& threads) {
-        return run_program(render({"--resolution=150,101", "--output=-", threads})).out;
-    };
-    const std::string one = image("--threads=1");
-    EXPECT_FALSE(one.empty());
-    EXPECT_EQ(one, image("--threads=3"));
-    EXPECT_EQ(one, image("--threads=0"));
-}
-
-TEST_F(CommandTest, AnImageThatNoMemoryHoldsIsRefused) {
-    expect_refusal(run_program(render({"--resolution=65535,65535", "--output=-"})), 1, "memory");
-}
-
-// Found before the file is even read.
-TEST_F(CommandTest, AnOutputThatCanNotBeWrittenIsFoundFirst) {
-    std::filesystem::create_directory(folder_ / "folder.png");
-    for (const std::string& output :
-         {(folder_ / "nowhere" / "a.png").string(), (folder_ / "folder.png").string(),
-          std::string("/proc/a.png")}) {
-        SCOPED_TRACE(output);
-        expect_refusal(run_program({"render", "missing.obj", "--output=" + output}), 1, output);
-    }
-}
-
-TEST_F(CommandTest, AnInterruptedRenderWritesNothing) {
-    for (const int signal : {SIGINT, SIGTERM}) {
-        RunningProgram program(render({"--resolution=4096,2048", "--threads=1", "--verbose",
-                                       "--output=" + (folder_ / "a.png").string()}),
-                               {});
-        ASSERT_TRUE(program.wait_for_error_text("built the tree"));
-        program.send(signal);
-        const ProgramResult result = program.wait();
-        EXPECT_EQ(result.exit_code, 128 + signal) << result.err;
-        EXPECT_THAT(folder_.names(), ElementsAre("squares.obj"));
-    }
 }
 
 TEST_F(CommandTest, InfoIsATableForPeople) {
