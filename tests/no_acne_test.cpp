@@ -155,59 +155,5 @@ TEST(NoAcne, AMillionRaysFromInsideAWatertightMeshMeetIt) {
     EXPECT_EQ(escaped, 0);
 }
 
-// A closed room as rectangles, a box or a mesh, lit from outside only: black inside.
-Scene room(int kind) {
-    Scene scene;
-    scene.ambient = glm::vec3(0.0f);
-    scene.background = glm::vec3(1.0f);  // what a leak would show
-    Material white;
-    white.ambient = glm::vec3(1.0f);
-    white.diffuse = glm::vec3(1.0f);
-    const MaterialId material = add_material(scene, white);
-    const glm::dvec3 low{-1.0, -0.7, -1.3};
-    const glm::dvec3 high{1.0, 0.9, 1.1};
-    if (kind == 0) {
-        const glm::dvec3 x{high.x - low.x, 0, 0};
-        const glm::dvec3 y{0, high.y - low.y, 0};
-        const glm::dvec3 z{0, 0, high.z - low.z};
-        for (const auto& wall :
-             {Rectangle{low, x, y}, Rectangle{low, y, z}, Rectangle{low, z, x},
-              Rectangle{high, -x, -y}, Rectangle{high, -y, -z}, Rectangle{high, -z, -x}}) {
-            place(scene, wall, material);
-        }
-    } else if (kind == 1) {
-        place(scene, Box{low, high}, material);
-    } else {
-        place_mesh(scene, ball_data(3), material);
-    }
-    for (const glm::dvec3& p : {glm::dvec3(5, 1, 2), glm::dvec3(-3, 6, 1), glm::dvec3(0, -4, -9)})
-        scene.lights.emplace_back(PointLight{"outside", p, glm::vec3(100.0f)});
-    return scene;
-}
-
-TEST(NoLeak, AClosedRoomLitFromOutsideIsBlackInside) {
-    for (int kind = 0; kind < 3; ++kind) {
-        SCOPED_TRACE(kind);
-        const Scene scene = room(kind);
-        const Accel accel = accel_of(scene);
-        RenderSettings settings;
-        RayCounts counts;
-        Random random(37);
-        int lit = 0;
-        for (int i = 0; i < 30000; ++i) {
-            Ray ray;
-            ray.origin = glm::vec3(random.point(glm::dvec3(-0.5), glm::dvec3(0.5)));
-            // Every other one into an edge or a corner of the rectangles' and the box's room.
-            glm::dvec3 target{random.unit() < 0.5 ? -1.0 : 1.0, random.unit() < 0.5 ? -0.7 : 0.9,
-                              random.between(-1.3, 1.1)};
-            if (i % 4 == 0) target = glm::dvec3(ray.origin) + random.direction();
-            ray = ray_towards(ray.origin, target);
-            const TracedRay traced = trace(accel, scene.lights, settings, ray, counts);
-            lit += traced.colour != glm::vec3(0.0f) ? 1 : 0;
-        }
-        EXPECT_EQ(lit, 0);
-    }
-}
-
 }  // namespace
 }  // namespace raypick

@@ -44,11 +44,35 @@ ShapeHit found_again(const AnyShape& shape, const ObjectRay& ray, const Hit& hit
     return best;
 }
 
-// Where walls meet, a point on one that rounding put beyond the other would see what lies outside.
-// So points keep off the rim by this length: more than rounding to float, less than can be seen.
-double off_the_rim(double magnitude, double edge_length) {
-    return std::min(0.25 * edge_length, magnitude * 0x1p-21);
-}
+// How near to the rim of a piece of surface points may lie.
+class Rim {
+public:
+    // `width` in scene space.
+    Rim(const glm::dmat3& world_from_object, double width)
+        : world_from_object_(world_from_object), width_(width) {}
+
+    // The rim's share of a way across the piece, at most a quarter.
+    [[nodiscard]] double share(const glm::dvec3& across) const {
+        return share(glm::length(world_from_object_ * across));
+    }
+    // The same of the height over `edge` of a piece that reaches by `across` from it.
+    [[nodiscard]] double share(const glm::dvec3& across, const glm::dvec3& edge) const {
+        const glm::dvec3 base = world_from_object_ * edge;
+        const double area = glm::length(glm::cross(world_from_object_ * across, base));
+        return share(area / glm::length(base));
+    }
+    [[nodiscard]] bool holds(const glm::dvec3& way) const {
+        return glm::length(world_from_object_ * way) < width_;
+    }
+
+private:
+    [[nodiscard]] double share(double length) const {
+        return length > 4.0 * width_ ? width_ / length : 0.25;
+    }
+
+    glm::dmat3 world_from_object_;
+    double width_;
+};
 
 // Around an axis: the unit vectors away from it and along the turn. On the axis: the frame's own.
 struct Around {
@@ -88,9 +112,13 @@ LocalPoint sphere_point(const Sphere& sphere, const ShapeHit& hit, const ObjectR
 }
 
 // A disk and its derivatives by angle and radius; the outer radius counts.
-LocalPoint disk_point(const Disk& disk, const AxisFrame& frame, const ObjectRay& ray, double t) {
+LocalPoint disk_point(const Disk& disk, const AxisFrame& frame, const ObjectRay& ray, double t,
+                      const Rim& rim) {
     const Around around = around_axis(frame, at(ray, t) - disk.centre);
-    const double radius = std::clamp(around.distance, disk.inner_radius, disk.radius);
+    const double width = disk.radius - disk.inner_radius;
+    const double margin = width * rim.share(width * around.away);
+    const double hole = disk.inner_radius > 0.0 ? disk.inner_radius + margin : 0.0;
+    const double radius = std::clamp(around.distance, hole, disk.radius - margin);
     LocalPoint point = flat_point(disk.centre + radius * around.away, disk.normal,
                                   largest(disk.centre) + disk.radius);
     if (!(around.distance > 0.0)) return point;
@@ -99,7 +127,7 @@ LocalPoint disk_point(const Disk& disk, const AxisFrame& frame, const ObjectRay&
     return point;
 }
 
-LocalPoint cone_point(const Cone& cone, const ShapeHit& hit, const ObjectRay& ray) {
+LocalPoint cone_point(const Cone& cone, const ShapeHit& hit, const ObjectRay& ray, const Rim& rim) {
     const glm::dvec3 axis = cone.apex - cone.base;
     const double length = glm::length(axis);
     // Caps measure their angles in the side's frame, whichever way they look.
@@ -110,13 +138,20 @@ LocalPoint cone_point(const Cone& cone, const ShapeHit& hit, const ObjectRay& ra
         const bool is_base = hit.primitive == 1;
         const Disk cap{is_base ? cone.base : cone.apex, is_base ? -frame.y : frame.y,
                        is_base ? cone.base_radius : cone.apex_radius, 0.0};
-        LocalPoint point = disk_point(cap, frame, ray, hit.t);
+        LocalPoint point = disk_point(cap, frame, ray, hit.t, rim);
         point.magnitude = magnitude;
         return point;
     }
     const glm::dvec3 from_base = at(ray, hit.t) - cone.base;
     const Around around = around_axis(frame, from_base);
-    const double height = std::clamp(glm::dot(from_base, frame.y) / length, 0.0, 1.0);
+    const glm::dvec3 narrowing = (cone.apex_radius - cone.base_radius) * around.away;
+    const double end = rim.share(axis + narrowing);
+    // At a tip the side itself is the other wall.
+    const auto margin = [&](double radius) {
+        return rim.holds(radius * around.away) ? std::max(end, rim.share(narrowing)) : end;
+    };
+    const double height = std::clamp(glm::dot(from_base, frame.y) / length,
+                                     margin(cone.base_radius), 1.0 - margin(cone.apex_radius));
     const double radius = cone.base_radius + height * (cone.apex_radius - cone.base_radius);
     const double widening = (cone.apex_radius - cone.base_radius) / length;
     const glm::dvec3 foot =
@@ -125,7 +160,7 @@ LocalPoint cone_point(const Cone& cone, const ShapeHit& hit, const ObjectRay& ra
         flat_point(foot + radius * around.away, around.away - widening * frame.y, magnitude);
     if (!(radius > 0.0)) return point;
     point.dpdu = kTurn * radius * around.along;
-    point.dpdv = axis + (cone.apex_radius - cone.base_radius) * around.away;
+    point.dpdv = axis + narrowing;
     return point;
 }
 
@@ -144,13 +179,24 @@ LocalPoint torus_point(const Torus& torus, const ShapeHit& hit, const ObjectRay&
     return point;
 }
 
+// Weights of a triangle's corners, none of them below its margin.
+glm::dvec3 off_the_edges(const glm::dvec3& weights, const glm::dvec3& margin) {
+    const glm::dvec3 room = glm::max(weights - margin, 0.0);
+    if (room == weights - margin) return weights;
+    const double free = 1.0 - (margin.x + margin.y + margin.z);
+    return margin + free / (room.x + room.y + room.z) * room;
+}
+
 // The point a u v of the plane through the corners, exact to double rounding.
 LocalPoint triangle_point(const ObjectRay& ray, const Hit& hit, const glm::dvec3& a,
-                          const glm::dvec3& b, const glm::dvec3& c) {
+                          const glm::dvec3& b, const glm::dvec3& c, const Rim& rim) {
     glm::dvec2 uv(hit.uv);
     if (const auto exact = intersect_triangle(shear(ray), a, b, c)) uv = {exact->u, exact->v};
+    const glm::dvec3 weights =
+        off_the_edges({1.0 - uv.x - uv.y, uv.x, uv.y},
+                      {rim.share(a - b, c - b), rim.share(b - c, a - c), rim.share(c - a, b - a)});
     LocalPoint point =
-        flat_point((1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c, glm::cross(b - a, c - a),
+        flat_point(weights.x * a + weights.y * b + weights.z * c, glm::cross(b - a, c - a),
                    std::max({largest(a), largest(b), largest(c)}));
     point.dpdu = b - a;
     point.dpdv = c - a;
@@ -190,6 +236,7 @@ struct LocalPointOf {
     const Scene& scene;
     const ObjectRay& ray;
     const Hit& hit;
+    Rim rim;
 
     LocalPoint operator()(const Sphere& sphere) const {
         return sphere_point(sphere, found_again(sphere, ray, hit, true), ray);
@@ -226,25 +273,24 @@ struct LocalPointOf {
         point.geometric_normal[axis] = upper ? 1.0 : -1.0;
         point.shading_normal = point.geometric_normal;
         point.magnitude = std::max(largest(box.min), largest(box.max));
-        for (int other = 0; other < 3; ++other) {
-            if (other == axis) continue;
-            const double margin = off_the_rim(point.magnitude, box.max[other] - box.min[other]);
-            point.position[other] =
-                std::clamp(p[other], box.min[other] + margin, box.max[other] - margin);
-        }
         const int u = (axis + 1) % 3;
         const int v = (axis + 2) % 3;
         point.dpdu[u] = box.max[u] - box.min[u];
         point.dpdv[v] = box.max[v] - box.min[v];
+        const double margin_u = point.dpdu[u] * rim.share(point.dpdu, point.dpdv);
+        const double margin_v = point.dpdv[v] * rim.share(point.dpdv, point.dpdu);
+        point.position[u] = std::clamp(p[u], box.min[u] + margin_u, box.max[u] - margin_u);
+        point.position[v] = std::clamp(p[v], box.min[v] + margin_v, box.max[v] - margin_v);
         return point;
     }
 
     LocalPoint operator()(const Triangle& triangle) const {
-        return triangle_point(ray, hit, triangle.a, triangle.b, triangle.c);
+        return triangle_point(ray, hit, triangle.a, triangle.b, triangle.c, rim);
     }
 
     LocalPoint operator()(const Disk& disk) const {
-        return disk_point(disk, axis_frame(disk.normal), ray, found_again(disk, ray, hit, true).t);
+        return disk_point(disk, axis_frame(disk.normal), ray, found_again(disk, ray, hit, true).t,
+                          rim);
     }
 
     LocalPoint operator()(const Rectangle& rectangle) const {
@@ -252,13 +298,11 @@ struct LocalPointOf {
         const glm::dvec3& u = rectangle.edge_u;
         const glm::dvec3& v = rectangle.edge_v;
         const double magnitude = largest(rectangle.corner) + largest(u) + largest(v);
-        const auto inside = [magnitude](double weight, const glm::dvec3& edge) {
-            const double length = glm::length(edge);
-            const double margin = off_the_rim(magnitude, length) / length;
-            return std::clamp(weight, margin, 1.0 - margin);
-        };
+        const double margin_u = rim.share(u, v);
+        const double margin_v = rim.share(v, u);
         LocalPoint point =
-            flat_point(rectangle.corner + inside(exact.uv.x, u) * u + inside(exact.uv.y, v) * v,
+            flat_point(rectangle.corner + std::clamp(exact.uv.x, margin_u, 1.0 - margin_u) * u +
+                           std::clamp(exact.uv.y, margin_v, 1.0 - margin_v) * v,
                        glm::cross(u, v), magnitude);
         point.dpdu = u;
         point.dpdv = v;
@@ -266,7 +310,7 @@ struct LocalPointOf {
     }
 
     LocalPoint operator()(const Cone& cone) const {
-        return cone_point(cone, found_again(cone, ray, hit, true), ray);
+        return cone_point(cone, found_again(cone, ray, hit, true), ray, rim);
     }
 
     LocalPoint operator()(const Torus& torus) const {
@@ -280,7 +324,7 @@ struct LocalPointOf {
 
     LocalPoint operator()(const ConeSetInstance& instance) const {
         const Cone cone = cone_of(scene.cone_sets[instance.set], hit.primitive);
-        return cone_point(cone, found_again(cone, ray, hit, false), ray);
+        return cone_point(cone, found_again(cone, ray, hit, false), ray, rim);
     }
 
     LocalPoint operator()(const MeshInstance& instance) const {
@@ -288,7 +332,7 @@ struct LocalPointOf {
         const glm::uvec3 corner = mesh.triangles[hit.primitive];
         LocalPoint point = triangle_point(ray, hit, glm::dvec3(mesh.positions[corner.x]),
                                           glm::dvec3(mesh.positions[corner.y]),
-                                          glm::dvec3(mesh.positions[corner.z]));
+                                          glm::dvec3(mesh.positions[corner.z]), rim);
         point.shading_normal = mesh_shading_normal(mesh, corner, hit, point.geometric_normal);
         take_mesh_uv(mesh, corner, point);
         return point;
@@ -298,8 +342,9 @@ struct LocalPointOf {
 }  // namespace
 
 LocalPoint local_point(const Scene& scene, const Object& object, const ObjectRay& ray,
-                       const Hit& hit) {
-    return std::visit(LocalPointOf{scene, ray, hit}, object.shape);
+                       const Hit& hit, double rim) {
+    const Rim off{object.world_from_object.linear, rim};
+    return std::visit(LocalPointOf{scene, ray, hit, off}, object.shape);
 }
 
 }  // namespace raypick

@@ -20,8 +20,10 @@ struct LocalPoint {
     double magnitude = 0.0;  // the largest coordinate that the position was worked out from
 };
 
-// `ray` is the hit's ray in the object's space.
+// `ray` is the hit's ray in the object's space. Where walls meet, a point on one that rounding put
+// beyond the other would see what lies outside: so points keep off the rims of flat pieces by `rim`
+// (scene space), or a quarter of the piece where it is small.
 LocalPoint local_point(const Scene& scene, const Object& object, const ObjectRay& ray,
-                       const Hit& hit);
+                       const Hit& hit, double rim);
 
 }  // namespace raypick

@@ -17,15 +17,23 @@ namespace {
 // to spare) on the way from the ray through the object's space and back. A secondary ray's own
 // intersection goes the same way, and must find the surface behind it.
 glm::dvec3 rounding_bound(const Transform& world_from_object, const Transform& object_from_world,
-                          const LocalPoint& local, const glm::dvec3& position) {
+                          double magnitude, const glm::dvec3& position) {
     const auto absolute = [](const glm::dmat3& m) {
         return glm::dmat3(glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2]));
     };
     const glm::dvec3 inside = absolute(object_from_world.linear) * glm::abs(position) +
-                              glm::abs(object_from_world.translation) + local.magnitude;
+                              glm::abs(object_from_world.translation) + magnitude;
     const glm::dvec3 reach =
         absolute(world_from_object.linear) * inside + glm::abs(world_from_object.translation);
     return glm::abs(position) * 0x1p-24 + reach * 0x1p-47;
+}
+
+// A ray leaves a wall by up to three such bounds. This many along the wall keep it on the right
+// side of another one that meets it at a sharp angle, and are less than can be seen.
+constexpr double kRimInBounds = 64.0;
+
+double largest(const glm::dvec3& v) {
+    return std::max({v.x, v.y, v.z});
 }
 
 // The weights of tangent vectors p and q that make up `vector`, which lies in their plane.
@@ -62,13 +70,17 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
     const Transform object_from_world = inverse(world_from_object).value_or(Transform{});
     const ObjectRay local_ray{object_from_world.point(glm::dvec3(ray.origin)),
                               object_from_world.vector(glm::dvec3(ray.direction))};
-    const LocalPoint local = local_point(scene, object, local_ray, hit);
+    const glm::dvec3 met =
+        glm::dvec3(ray.origin) + static_cast<double>(hit.t) * glm::dvec3(ray.direction);
+    const double rim =
+        kRimInBounds * largest(rounding_bound(world_from_object, object_from_world, 0.0, met));
+    const LocalPoint local = local_point(scene, object, local_ray, hit, rim);
     const glm::dvec3 position = world_from_object.point(local.position);
 
     SurfacePoint surface;
     surface.position = glm::vec3(position);
     surface.position_error =
-        glm::vec3(rounding_bound(world_from_object, object_from_world, local, position)) +
+        glm::vec3(rounding_bound(world_from_object, object_from_world, local.magnitude, position)) +
         std::numeric_limits<float>::min();
     surface.geometric_normal = glm::vec3(world_normal(object_from_world, local.geometric_normal));
     surface.shading_normal = glm::vec3(world_normal(object_from_world, local.shading_normal));
