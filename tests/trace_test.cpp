@@ -1,6 +1,6 @@
 #include "tracer/shade/trace.h"
 
-#include "tests/tracer_scenes.h"
+#include "tests/trace_shots.h"
 #include "tracer/shade/local_light.h"
 
 #include <gtest/gtest.h>
@@ -18,51 +18,12 @@ RayCounts sums(RayCounts counts) {
     return counts;
 }
 
-void expect_colour(const glm::vec3& got, const glm::dvec3& wanted, double tolerance = 1e-6) {
-    EXPECT_NEAR(static_cast<double>(got.x), wanted.x, tolerance);
-    EXPECT_NEAR(static_cast<double>(got.y), wanted.y, tolerance);
-    EXPECT_NEAR(static_cast<double>(got.z), wanted.z, tolerance);
-}
-
-struct Shot {
-    TracedRay traced;
-    RayCounts counts;
-};
-
-Shot shoot(const Scene& scene, const Ray& ray, const RenderSettings& settings = {}) {
-    const Accel accel = accel_of(scene);
-    Shot shot;
-    shot.traced = trace(accel, scene.lights, settings, ray, shot.counts);
-    return shot;
-}
-
-// No light of its own anywhere: what a test sees it has put there.
-Scene dark_scene() {
-    Scene scene;
-    scene.background = glm::vec3(0.0f);
-    scene.ambient = glm::vec3(0.0f);
-    return scene;
-}
-
 Material phong_material() {
     Material material;
     material.ambient = {0.1f, 0.2f, 0.3f};
     material.diffuse = {0.5f, 0.25f, 0.125f};
     material.specular = {0.4f, 0.8f, 0.2f};
     material.shininess = 10.0f;
-    return material;
-}
-
-Material mirror_material(float reflect = 1.0f) {
-    Material material = black_material();
-    material.reflect = glm::vec3(reflect);
-    return material;
-}
-
-Material glass_material(float ior = 1.5f) {
-    Material material = black_material();
-    material.transmit = glm::vec3(1.0f);
-    material.ior = ior;
     return material;
 }
 
