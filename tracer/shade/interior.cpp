@@ -11,8 +11,7 @@ Body body_of(const Object& object, const Hit& hit) {
 }
 
 bool fills(const Material& material) {
-    return material.transmits() && !material.thin_walled &&
-           (material.ior != 1.0f || material.absorption != glm::vec3(0.0f));
+    return material.transmits() && !material.thin_walled;
 }
 
 MaterialId Interior::medium(const Scene& scene) const {
@@ -72,6 +71,12 @@ Crossing cross_surface(const Scene& scene, const Interior& interior, const Body&
     crossing.from = crossing.before.medium(scene);
     crossing.to = crossing.after.medium(scene);
     return crossing;
+}
+
+bool is_there(const Scene& scene, const Crossing& crossing, MaterialId surface) {
+    if (crossing.from != crossing.to) return true;
+    const Material& kind = material(scene, surface);
+    return crossing.from == surface && kind.ior == 1.0f && kind.absorption == glm::vec3(0.0f);
 }
 
 }  // namespace raypick

@@ -22,6 +22,7 @@ struct Body {
 Body body_of(const Object& object, const Hit& hit);
 
 // True if the material fills a body: rays that enter it are inside of something until they leave.
+// So does a material of index 1, a bubble of air in glass.
 bool fills(const Material& material);
 
 // The bodies around a point of a ray's path, in the order in which they were entered.
@@ -55,10 +56,12 @@ struct Crossing {
     Interior after;
     MaterialId from = kNoMaterial;
     MaterialId to = kNoMaterial;
-
-    // Otherwise the surface lies inside of something of higher priority: it is not there.
-    [[nodiscard]] bool changes_medium() const { return from != to; }
 };
+
+// False where the surface lies inside of something of higher priority or of its own kind, glass in
+// the same glass. One of index 1 that absorbs nothing stays in its own kind: it may as well be a
+// row of open sheets, which are never left.
+bool is_there(const Scene& scene, const Crossing& crossing, MaterialId surface);
 
 // A ray that leaves a body which it never entered began inside of it (its origin was there, or in
 // an open mesh). One that enters a body twice had left it through a hole.

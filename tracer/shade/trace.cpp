@@ -101,9 +101,8 @@ struct Path {
 struct Boundary {
     Crossing crossing;  // before == after where the surface bounds no body
     float eta = 1.0f;   // index before over index beyond
-
-    [[nodiscard]] bool is_there() const { return !bounds_body || crossing.changes_medium(); }
     bool bounds_body = false;
+    bool is_there = true;
 };
 
 // What leaves a surface: shares of a mirrored and of a transmitted ray.
@@ -165,7 +164,7 @@ private:
         here.interior = boundary.crossing.before;
         here.cone.width = path.cone.at(hit.t);
         const glm::vec3 share = passed(scene_, boundary.crossing.from, hit.t);
-        if (!boundary.is_there() && hidden < kMostHidden) {
+        if (!boundary.is_there && hidden < kMostHidden) {
             here.interior = boundary.crossing.after;
             Ray onwards;
             onwards.origin = offset_origin(surface, ray.direction);
@@ -186,6 +185,7 @@ private:
             const Object& object = scene_.objects[object_index(scene_, hit.object)];
             boundary.crossing = cross_surface(scene_, interior, body_of(object, hit),
                                               surface.material, surface.front_face);
+            boundary.is_there = is_there(scene_, boundary.crossing, surface.material);
             boundary.eta =
                 index_of(scene_, boundary.crossing.from) / index_of(scene_, boundary.crossing.to);
         } else {
@@ -369,7 +369,7 @@ private:
                                                         surface.material, surface.front_face);
                 medium = crossing.from;
                 interior = crossing.after;
-                there = crossing.changes_medium();
+                there = is_there(scene_, crossing, surface.material);
             }
             share *= passed(scene_, medium, hit.t - reached);
             reached = hit.t;
