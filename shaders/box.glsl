@@ -2,8 +2,6 @@
 uniform vec3 box_min;  // relative to the eye, from double precision
 uniform vec3 box_max;
 
-#include "slab.glsl"
-
 // The first axis on which `v` is `value`.
 int axis_of(vec3 v, float value) {
     return v.x == value ? 0 : v.y == value ? 1 : 2;

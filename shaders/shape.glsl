@@ -17,6 +17,12 @@ bool is_there(inout Surface s) {
     return true;
 }
 
+// What several shapes share: a file is included once, so not within the branch of one shape.
+#include "around_y.glsl"
+#include "slab.glsl"
+#include "unit_space.glsl"
+#include "unit_sphere.glsl"
+
 #if defined(SHAPE_MESH)
 #include "mesh.glsl"
 #elif defined(SHAPE_SPHERE)
@@ -25,6 +31,10 @@ bool is_there(inout Surface s) {
 #include "box.glsl"
 #elif defined(SHAPE_PLANE)
 #include "plane.glsl"
+#elif defined(SHAPE_DISK)
+#include "disk.glsl"
+#elif defined(SHAPE_RECTANGLE)
+#include "rectangle.glsl"
 #endif
 
 // Depth is t itself, to full float precision: a power of two brings it below 1.

@@ -6,8 +6,6 @@
 uniform vec3 sphere_eye;         // the eye
 uniform float sphere_eye_power;  // dot(eye, eye) - 1, from double precision
 
-#include "unit_sphere.glsl"
-
 Surface closest_surface(Ray ray) {
     vec3 offset = object_vector(ray.origin);
     float power = sphere_eye_power + dot(offset, 2.0 * sphere_eye + offset);

@@ -62,7 +62,23 @@ struct ShapeDraw {
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
 
+    void operator()(const UnitDisk& disk) const {
+        enter_unit_space();
+        uniforms.set("disk_inner_radius", disk.inner_radius);
+        draw_proxy();
+    }
+
+    void operator()(const UnitSquare&) const {
+        enter_unit_space();
+        draw_proxy();
+    }
+
 private:
+    void enter_unit_space() const {
+        set_space(object.object_from_scene.linear);
+        uniforms.set("unit_eye", glm::vec3(object.object_from_scene.point(view.eye)));
+    }
+
     // The space that the shape's shader works in.
     void set_space(const glm::dmat3& object_from_scene) const {
         uniforms.set("object_from_scene", glm::mat3(object_from_scene));

@@ -42,6 +42,12 @@ std::shared_ptr<const GpuMesh> upload_triangle(const Triangle& triangle) {
     return std::make_shared<GpuMesh>(make_mesh("triangle", std::move(data)), max_buffer_texels());
 }
 
+Transform inverse_of(const Object& object, const Transform& transform) {
+    const auto inverted = inverse(transform);
+    if (!inverted) throw Error("object " + object.name + ": its transform is singular");
+    return *inverted;
+}
+
 // Fills in what depends on the kind of shape.
 struct ShapeDrawing {
     const Scene& scene;
@@ -57,23 +63,30 @@ struct ShapeDrawing {
     }
     void operator()(const Triangle& triangle) const {
         drawn.shape = upload_triangle(triangle);
-        drawn.scene_from_object = drawn.scene_from_object * translate(triangle.a);
-        drawn.object_from_scene = translate(-triangle.a) * drawn.object_from_scene;
+        move_into(translate(triangle.a));
         drawn.bounds = object_bounds(scene, object);
     }
     void operator()(const Plane& plane) const { drawn.shape = plane; }
     template <typename FiniteShape>
     void operator()(const FiniteShape& shape) const {
+        drawn.bounds = object_bounds(scene, object);
         if constexpr (std::is_constructible_v<DrawnShape, FiniteShape>) {
             drawn.shape = shape;
-            drawn.bounds = object_bounds(scene, object);
+        } else if constexpr (requires { unit_shape(shape); }) {
+            drawn.shape = unit_shape(shape);
+            move_into(object_from_unit(shape));
         }
+    }
+
+private:
+    // From here on the object's space is another one.
+    void move_into(const Transform& object_from_inner) const {
+        drawn.scene_from_object = drawn.scene_from_object * object_from_inner;
+        drawn.object_from_scene = inverse_of(object, object_from_inner) * drawn.object_from_scene;
     }
 };
 
 DrawnObject drawn_object(const GpuScene& gpu, const Object& object) {
-    const auto object_from_scene = inverse(object.world_from_object);
-    if (!object_from_scene) throw Error("object " + object.name + ": its transform is singular");
     DrawnObject drawn;
     drawn.id = object.id;
     drawn.mask = object.mask;
@@ -81,7 +94,7 @@ DrawnObject drawn_object(const GpuScene& gpu, const Object& object) {
     drawn.sides = object.sides;
     drawn.textured = is_textured(gpu, object);
     drawn.scene_from_object = object.world_from_object;
-    drawn.object_from_scene = *object_from_scene;
+    drawn.object_from_scene = inverse_of(object, object.world_from_object);
     std::visit(ShapeDrawing{*gpu.scene, object, gpu, drawn}, object.shape);
     return drawn;
 }
@@ -96,7 +109,7 @@ GpuScene upload_scene(std::shared_ptr<const Scene> scene, const GpuScene& before
     for (const Object& object : gpu.scene->objects) {
         const auto* instance = std::get_if<MeshInstance>(&object.shape);
         if (instance != nullptr && gpu.meshes[instance->mesh]->chunks().empty()) continue;
-        const bool drawable = object.shape.index() <= 4;  // TODO(raster)
+        const bool drawable = object.shape.index() <= 6;  // TODO(raster)
         if (drawable) gpu.objects.push_back(drawn_object(gpu, object));
     }
     gpu.textures = upload_textures(*gpu.scene, before.textures);

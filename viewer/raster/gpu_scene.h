@@ -6,6 +6,7 @@
 #include "viewer/raster/gpu_mesh.h"
 #include "viewer/raster/gpu_sky.h"
 #include "viewer/raster/gpu_textures.h"
+#include "viewer/raster/unit_shapes.h"
 #include "viewer/raster/view_numbers.h"
 
 #include <memory>
@@ -15,7 +16,8 @@
 namespace raypick {
 
 // What a scene's object is to the rasteriser. Plain triangles are meshes of one.
-using DrawnShape = std::variant<std::shared_ptr<const GpuMesh>, Sphere, Box, Plane>;
+using DrawnShape =
+    std::variant<std::shared_ptr<const GpuMesh>, Sphere, Box, Plane, UnitDisk, UnitSquare>;
 
 struct DrawnObject {
     ObjectId id = kNoObject;

@@ -39,10 +39,10 @@ struct ShapeShader {
     const char* vertex_file;
     const char* define;
 };
-constexpr ShapeShader kShapes[kShapeKinds] = {{"mesh.vert", "SHAPE_MESH"},
-                                              {"proxy.vert", "SHAPE_SPHERE"},
-                                              {"proxy.vert", "SHAPE_BOX"},
-                                              {"fullscreen.vert", "SHAPE_PLANE"}};
+constexpr ShapeShader kShapes[kShapeKinds] = {
+    {"mesh.vert", "SHAPE_MESH"},  {"proxy.vert", "SHAPE_SPHERE"},
+    {"proxy.vert", "SHAPE_BOX"},  {"fullscreen.vert", "SHAPE_PLANE"},
+    {"proxy.vert", "SHAPE_DISK"}, {"proxy.vert", "SHAPE_RECTANGLE"}};
 
 Program shape_program(const ShapeShader& shape, const char* fragment_file, bool textured) {
     std::vector<std::string> defines = {shape.define};

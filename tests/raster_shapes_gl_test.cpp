@@ -1,0 +1,206 @@
+// Shapes that OpenGL draws by casting each pixel's ray: ids, primitives, distances and looks are
+// the tracer's, for turned, stretched, mirrored and sheared instances, from far and from inside.
+#include "tests/look_fixture.h"
+
+#include <cmath>
+
+namespace raypick {
+namespace {
+
+constexpr ImageSize kSize{151, 207};
+
+Transform sheared(double xy, double zy) {
+    Transform map;
+    map.linear[1][0] = xy;  // x grows with y
+    map.linear[1][2] = zy;
+    return map;
+}
+
+// A shape of each kind, about 2 wide around 0.
+struct NamedShape {
+    const char* name;
+    Shape (*add)(Scene& scene);
+};
+
+const NamedShape kShapes[] = {
+    {"disk",
+     [](Scene&) -> Shape {
+         return Disk{{0.1, 0.05, -0.1}, {0.3, 2.0, 0.4}, 1.1, 0.0};
+     }},
+    {"ring",
+     [](Scene&) -> Shape {
+         return Disk{{0.0, 0.1, 0.1}, {-0.2, 0.5, 1.0}, 1.2, 0.55};
+     }},
+    {"rectangle",
+     [](Scene&) -> Shape {
+         return Rectangle{{-1.0, -0.4, 0.8}, {1.9, 0.3, 0.2}, {0.3, 0.9, -1.4}};
+     }},
+};
+
+Material painted(const glm::vec3& colour) {
+    Material m;
+    m.ambient = m.diffuse = colour;
+    m.specular = glm::vec3(0.4f);
+    m.shininess = 25.0f;
+    return m;
+}
+
+struct Paints {
+    MaterialId first = kNoMaterial;
+    MaterialId second = kNoMaterial;
+};
+
+// The shape as it is, turned, stretched, mirrored and sheared, over a floor.
+Scene instances(Scene scene, const NamedShape& kind, const Paints& paints) {
+    const Shape shape = kind.add(scene);
+    place(scene, Plane{{0.0, 1.0, 0.0}, 2.2}, paints.second);
+    place(scene, shape, paints.first);
+    place(scene, shape, paints.second,
+          translate({2.3, 0.4, -0.8}) * rotate(70, {0.3, 1, 0.4}) * scale({1.1, 0.5, 0.8}));
+    place(scene, shape, paints.second,
+          translate({-2.2, -0.3, 0.4}) * rotate(-40, {1, 0.2, 0.1}) * scale({-0.7, 0.9, 1.0}));
+    place(scene, shape, paints.first,
+          translate({0.3, 1.4, -2.0}) * sheared(0.8, -0.3) * rotate(100, {1, 0.4, -0.2}));
+    scene.lights.emplace_back(PointLight{"", {2.0, 4.0, 5.0}, glm::vec3(0.8f)});
+    scene.lights.emplace_back(DirectionalLight{"", {0.5, -1.0, 0.2}, glm::vec3(0.3f)});
+    return scene;
+}
+
+Scene plain_instances(const NamedShape& kind) {
+    Scene scene;
+    const Paints paints{add_material(scene, painted({0.8f, 0.3f, 0.2f})),
+                        add_material(scene, painted({0.3f, 0.5f, 0.7f}))};
+    return instances(std::move(scene), kind, paints);
+}
+
+Scene checked_instances(const NamedShape& kind) {
+    Scene scene;
+    const TextureId checker = add_texture(
+        scene, Texture{"checker", Checker{{0.9f, 0.8f, 0.7f, 1.0f}, {0.1f, 0.2f, 0.15f, 0.0f}}});
+    Material m = painted(glm::vec3(0.8f));
+    m.map(MapSlot::diffuse).texture = checker;
+    m.map(MapSlot::diffuse).u_row = {12.0f, 1.0f, 0.2f};
+    m.map(MapSlot::diffuse).v_row = {-1.0f, 6.0f, 0.1f};
+    const MaterialId id = add_material(scene, m);
+    return instances(std::move(scene), kind, {id, id});
+}
+
+struct ViewPoint {
+    const char* name;
+    Camera camera;
+};
+
+Camera view_from(const glm::dvec3& eye, const glm::dvec3& at, double fovy = 45.0) {
+    Camera camera = camera_at(eye, at);
+    camera.fovy = fovy;
+    camera.near = 0.01;
+    return camera;
+}
+
+Camera parallel(Camera camera, double height) {
+    camera.projection = Projection::orthographic;
+    camera.height = height;
+    return camera;
+}
+
+const ViewPoint kViews[] = {
+    {"front", view_from({0.5, 1.4, 6.0}, {0.0, 0.1, 0.0})},
+    {"above", view_from({1.0, 6.5, 1.5}, {0.0, 0.0, -0.3})},
+    {"parallel", parallel(view_from({2.0, 1.5, 5.0}, {0.0, 0.2, 0.0}), 5.5)},
+    {"far", view_from({90.0, 70.0, 150.0}, {0.0, 0.1, 0.0}, 1.8)},
+    {"near", view_from({0.3, 0.9, 1.3}, {0.2, 0.0, 0.1}, 80.0)},
+    {"inside", view_from({0.05, 0.12, 0.03}, {1.0, 0.3, -0.4}, 100.0)},
+};
+
+// Pixels that show another primitive of the right object although no edge is near.
+std::size_t wrong_primitives(const Image& traced, const Image& raster) {
+    const auto ids_of = [](const Image& image) {
+        return [&image](Pixel p) {
+            const std::size_t i = image.size.index(p);
+            return std::pair(image.object[i], image.primitive[i]);
+        };
+    };
+    std::size_t wrong = 0;
+    for (int row = 0; row < traced.size.rows; ++row) {
+        for (int col = 0; col < traced.size.cols; ++col) {
+            const Pixel p{row, col};
+            if (ids_of(traced)(p) != ids_of(raster)(p) &&
+                uniform_around(traced.size, p, ids_of(traced)) &&
+                uniform_around(traced.size, p, ids_of(raster))) {
+                ++wrong;
+            }
+        }
+    }
+    return wrong;
+}
+
+class ShapeTest : public LookTest, public ::testing::WithParamInterface<NamedShape> {
+protected:
+    Pictures expect_ids(const Scene& scene, const Camera& camera) {
+        Pictures pictures = both(scene, camera, kSize);
+        const Agreement result = compare(*accel_, camera, pictures.raster);
+        EXPECT_EQ(result.uniform_differ, 0u) << result.summary();
+        EXPECT_LE(result.edge_share(), 0.005) << result.summary();
+        EXPECT_LT(result.t_error, 2e-5) << result.summary();
+        EXPECT_EQ(wrong_primitives(pictures.traced, pictures.raster), 0u);
+        worst_t_ = std::max(worst_t_, result.t_error);
+        worst_edges_ = std::max(worst_edges_, result.edge_share());
+        return pictures;
+    }
+
+    void TearDown() override {
+        fmt::print("    t within {:.1e}, at most {:.3f} % of the pixels differ\n", worst_t_,
+                   100.0 * worst_edges_);
+        LookTest::TearDown();
+    }
+
+    double worst_t_ = 0.0;
+    double worst_edges_ = 0.0;
+};
+
+TEST_P(ShapeTest, IdsArePicks) {
+    const Scene scene = plain_instances(GetParam());
+    for (const ViewPoint& view : kViews) {
+        SCOPED_TRACE(view.name);
+        const Pictures pictures = expect_ids(scene, view.camera);
+        const std::vector<ObjectId>& shown = pictures.raster.object;
+        EXPECT_GT(std::count(shown.begin(), shown.end(), 1u), 200);
+    }
+}
+
+TEST_P(ShapeTest, OnlySeenSidesAreThere) {
+    Scene scene = plain_instances(GetParam());
+    for (const Sides sides : {Sides::front_only, Sides::back_only}) {
+        for (Object& object : scene.objects)
+            object.sides = object.id == 0 ? Sides::both : sides;
+        for (const ViewPoint& view : kViews) {
+            SCOPED_TRACE(view.name);
+            expect_ids(scene, view.camera);
+        }
+    }
+}
+
+TEST_P(ShapeTest, HolesAreLookedThrough) {
+    Scene scene = checked_instances(GetParam());
+    scene.materials[0].map(MapSlot::opacity) = scene.materials[0].map(MapSlot::diffuse);
+    scene.materials[0].map(MapSlot::opacity).channel = 3;
+    scene.objects[0].material = add_material(scene, painted(glm::vec3(0.5f)));
+    for (const ViewPoint& view : kViews) {
+        SCOPED_TRACE(view.name);
+        expect_ids(scene, view.camera);
+    }
+}
+
+TEST_P(ShapeTest, LooksAsTraced) {
+    for (const ViewPoint& view : kViews) {
+        SCOPED_TRACE(view.name);
+        agree(plain_instances(GetParam()), view.camera, 2e-3, kSize);
+        agree(checked_instances(GetParam()), view.camera, 5e-3, kSize);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, ShapeTest, ::testing::ValuesIn(kShapes),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace raypick
