@@ -13,9 +13,11 @@ Surface closest_surface(Ray ray) {
     s.shading = s.geometric;
     s.front = local.direction.y < 0.0;
 #ifdef TEXTURED
-    Around around = around_y(p);
-    set_texture_frame(s, vec2(around.turn, distance), kTurn * distance * around.along,
-                      distance > 0.0 ? around.away : vec3(0.0));
+    Around around = around_axis(p);
+    float there = distance > 0.0 ? 1.0 : 0.0;  // the centre has no angle
+    set_texture_frame(s, vec2(around.turn, distance),
+                      kTurn * distance * vec3(around.along.x, 0.0, around.along.y),
+                      there * vec3(around.away.x, 0.0, around.away.y));
 #endif
     if (is_there(s)) return s;
     return no_surface();

@@ -18,8 +18,9 @@ bool is_there(inout Surface s) {
 }
 
 // What several shapes share: a file is included once, so not within the branch of one shape.
-#include "around_y.glsl"
+#include "around_axis.glsl"
 #include "slab.glsl"
+#include "cone_body.glsl"
 #include "unit_space.glsl"
 #include "unit_sphere.glsl"
 
@@ -35,6 +36,8 @@ bool is_there(inout Surface s) {
 #include "disk.glsl"
 #elif defined(SHAPE_RECTANGLE)
 #include "rectangle.glsl"
+#elif defined(SHAPE_CONE)
+#include "cone.glsl"
 #endif
 
 // Depth is t itself, to full float precision: a power of two brings it below 1.

@@ -7,7 +7,7 @@
 namespace raypick {
 namespace {
 
-constexpr ImageSize kSize{151, 207};
+constexpr ImageSize kSize{101, 139};
 
 Transform sheared(double xy, double zy) {
     Transform map;
@@ -34,6 +34,30 @@ const NamedShape kShapes[] = {
     {"rectangle",
      [](Scene&) -> Shape {
          return Rectangle{{-1.0, -0.4, 0.8}, {1.9, 0.3, 0.2}, {0.3, 0.9, -1.4}};
+     }},
+    {"cylinder",
+     [](Scene&) -> Shape {
+         return Cone{{-0.3, -0.8, 0.2}, {0.4, 0.9, -0.3}, 0.7, 0.7, true};
+     }},
+    {"pipe",
+     [](Scene&) -> Shape {
+         return Cone{{-0.6, 0.3, 0.2}, {0.7, 0.1, -0.5}, 0.8, 0.8, false};
+     }},
+    {"whole_cone",
+     [](Scene&) -> Shape {
+         return Cone{{0.1, -0.8, 0.3}, {-0.2, 1.3, -0.2}, 1.0, 0.0, true};
+     }},
+    {"open_whole_cone",
+     [](Scene&) -> Shape {
+         return Cone{{0.6, 0.5, 0.9}, {-0.4, -0.2, -0.3}, 0.0, 1.0, false};
+     }},
+    {"truncated_cone",
+     [](Scene&) -> Shape {
+         return Cone{{0.2, 0.7, 0.1}, {-0.1, -0.6, 0.2}, 0.5, 1.1, true};
+     }},
+    {"flat_lamp_shade",
+     [](Scene&) -> Shape {
+         return Cone{{0.0, 0.1, 0.0}, {0.05, -0.2, 0.1}, 1.2, 0.6, false};
      }},
 };
 
@@ -141,20 +165,37 @@ protected:
         const Agreement result = compare(*accel_, camera, pictures.raster);
         EXPECT_EQ(result.uniform_differ, 0u) << result.summary();
         EXPECT_LE(result.edge_share(), 0.005) << result.summary();
-        EXPECT_LT(result.t_error, 2e-5) << result.summary();
+        const std::size_t off = wrong_distances(camera, pictures.raster);
+        EXPECT_LE(off, kSize.pixel_count() / 2000) << result.summary();
         EXPECT_EQ(wrong_primitives(pictures.traced, pictures.raster), 0u);
-        worst_t_ = std::max(worst_t_, result.t_error);
         worst_edges_ = std::max(worst_edges_, result.edge_share());
         return pictures;
     }
 
+    // Pixels with the right ids at another distance: an open shape's rim may hide its other wall.
+    [[nodiscard]] std::size_t wrong_distances(const Camera& camera, const Image& raster) const {
+        const std::vector<Hit> hits = first_hits(*accel_, camera, kSize);
+        const RayGenerator generator(camera, kSize);
+        std::size_t wrong = 0;
+        for (int row = 0; row < kSize.rows; ++row) {
+            for (int col = 0; col < kSize.cols; ++col) {
+                const std::size_t i = kSize.index({row, col});
+                const Hit& hit = hits[i];
+                if (!hit.valid() || raster.object[i] != hit.object ||
+                    raster.primitive[i] != hit.primitive) {
+                    continue;
+                }
+                if (!(t_error(raster, {row, col}, generator, hit) < 1e-5)) ++wrong;
+            }
+        }
+        return wrong;
+    }
+
     void TearDown() override {
-        fmt::print("    t within {:.1e}, at most {:.3f} % of the pixels differ\n", worst_t_,
-                   100.0 * worst_edges_);
+        fmt::print("    at most {:.3f} % of the pixels differ\n", 100.0 * worst_edges_);
         LookTest::TearDown();
     }
 
-    double worst_t_ = 0.0;
     double worst_edges_ = 0.0;
 };
 
@@ -164,7 +205,7 @@ TEST_P(ShapeTest, IdsArePicks) {
         SCOPED_TRACE(view.name);
         const Pictures pictures = expect_ids(scene, view.camera);
         const std::vector<ObjectId>& shown = pictures.raster.object;
-        EXPECT_GT(std::count(shown.begin(), shown.end(), 1u), 200);
+        EXPECT_GT(std::count(shown.begin(), shown.end(), 1u), 100);
     }
 }
 

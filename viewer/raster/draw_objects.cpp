@@ -73,6 +73,15 @@ struct ShapeDraw {
         draw_proxy();
     }
 
+    void operator()(const UnitCone& cone) const {
+        enter_unit_space();
+        uniforms.set("cone_length", cone.length);
+        uniforms.set("cone_base_radius", cone.base_radius);
+        uniforms.set("cone_apex_radius", cone.apex_radius);
+        uniforms.set("cone_capped", static_cast<int>(cone.capped));
+        draw_proxy();
+    }
+
 private:
     void enter_unit_space() const {
         set_space(object.object_from_scene.linear);

@@ -109,7 +109,7 @@ GpuScene upload_scene(std::shared_ptr<const Scene> scene, const GpuScene& before
     for (const Object& object : gpu.scene->objects) {
         const auto* instance = std::get_if<MeshInstance>(&object.shape);
         if (instance != nullptr && gpu.meshes[instance->mesh]->chunks().empty()) continue;
-        const bool drawable = object.shape.index() <= 6;  // TODO(raster)
+        const bool drawable = object.shape.index() <= 7;  // TODO(raster)
         if (drawable) gpu.objects.push_back(drawn_object(gpu, object));
     }
     gpu.textures = upload_textures(*gpu.scene, before.textures);

@@ -16,8 +16,8 @@
 namespace raypick {
 
 // What a scene's object is to the rasteriser. Plain triangles are meshes of one.
-using DrawnShape =
-    std::variant<std::shared_ptr<const GpuMesh>, Sphere, Box, Plane, UnitDisk, UnitSquare>;
+using DrawnShape = std::variant<std::shared_ptr<const GpuMesh>, Sphere, Box, Plane, UnitDisk,
+                                UnitSquare, UnitCone>;
 
 struct DrawnObject {
     ObjectId id = kNoObject;

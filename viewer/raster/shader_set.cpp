@@ -42,7 +42,8 @@ struct ShapeShader {
 constexpr ShapeShader kShapes[kShapeKinds] = {
     {"mesh.vert", "SHAPE_MESH"},  {"proxy.vert", "SHAPE_SPHERE"},
     {"proxy.vert", "SHAPE_BOX"},  {"fullscreen.vert", "SHAPE_PLANE"},
-    {"proxy.vert", "SHAPE_DISK"}, {"proxy.vert", "SHAPE_RECTANGLE"}};
+    {"proxy.vert", "SHAPE_DISK"}, {"proxy.vert", "SHAPE_RECTANGLE"},
+    {"proxy.vert", "SHAPE_CONE"}};
 
 Program shape_program(const ShapeShader& shape, const char* fragment_file, bool textured) {
     std::vector<std::string> defines = {shape.define};

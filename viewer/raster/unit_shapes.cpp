@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace raypick {
@@ -12,6 +13,10 @@ namespace {
 
 Transform in_frame(const AxisFrame& frame, const glm::dvec3& origin, double unit) {
     return {glm::dmat3(unit * frame.x, unit * frame.y, unit * frame.z), origin};
+}
+
+double unit_of(const Cone& cone) {
+    return std::max({glm::length(cone.apex - cone.base), cone.base_radius, cone.apex_radius});
 }
 
 }  // namespace
@@ -24,6 +29,13 @@ UnitSquare unit_shape(const Rectangle&) {
     return {};
 }
 
+UnitCone unit_shape(const Cone& cone) {
+    const double unit = unit_of(cone);
+    return {static_cast<float>(glm::length(cone.apex - cone.base) / unit),
+            static_cast<float>(cone.base_radius / unit),
+            static_cast<float>(cone.apex_radius / unit), cone.capped};
+}
+
 Transform object_from_unit(const Disk& disk) {
     return in_frame(axis_frame(disk.normal), disk.centre, disk.radius);
 }
@@ -33,6 +45,10 @@ Transform object_from_unit(const Rectangle& rectangle) {
     // As long as the edges, so that the map can be inverted precisely.
     const glm::dvec3 across = normal / std::sqrt(glm::length(normal));
     return {glm::dmat3(rectangle.edge_u, rectangle.edge_v, across), rectangle.corner};
+}
+
+Transform object_from_unit(const Cone& cone) {
+    return in_frame(axis_frame(cone.apex - cone.base), cone.base, unit_of(cone));
 }
 
 }  // namespace raypick

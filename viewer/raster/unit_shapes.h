@@ -15,11 +15,21 @@ struct UnitDisk {
 // [0, 1] along x and y at z = 0; the outside is +z.
 struct UnitSquare {};
 
+// From a base at 0 along +y; the largest of its lengths is 1. Angles are measured from x over z.
+struct UnitCone {
+    float length = 1.0f;
+    float base_radius = 1.0f;
+    float apex_radius = 1.0f;
+    bool capped = true;
+};
+
 UnitDisk unit_shape(const Disk& disk);
 UnitSquare unit_shape(const Rectangle& rectangle);
+UnitCone unit_shape(const Cone& cone);
 
 // The shape of the object is this map's image of its unit shape.
 Transform object_from_unit(const Disk& disk);
 Transform object_from_unit(const Rectangle& rectangle);
+Transform object_from_unit(const Cone& cone);
 
 }  // namespace raypick
