@@ -23,6 +23,9 @@ bool is_there(inout Surface s) {
 #include "cone_body.glsl"
 #include "unit_space.glsl"
 #include "unit_sphere.glsl"
+#if defined(SHAPE_SPHERE_SET) || defined(SHAPE_CONE_SET)
+#include "set_element.glsl"
+#endif
 
 #if defined(SHAPE_MESH)
 #include "mesh.glsl"
@@ -38,6 +41,10 @@ bool is_there(inout Surface s) {
 #include "rectangle.glsl"
 #elif defined(SHAPE_CONE)
 #include "cone.glsl"
+#elif defined(SHAPE_SPHERE_SET)
+#include "sphere_set.glsl"
+#elif defined(SHAPE_CONE_SET)
+#include "cone_set.glsl"
 #endif
 
 // Depth is t itself, to full float precision: a power of two brings it below 1.

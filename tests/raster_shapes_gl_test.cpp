@@ -16,6 +16,43 @@ Transform sheared(double xy, double zy) {
     return map;
 }
 
+// Two materials in turn, three elements each.
+std::vector<Part> striped(std::uint32_t count) {
+    std::vector<Part> parts;
+    for (std::uint32_t first = 0; first < count; first += 3)
+        parts.push_back({first, std::min(3u, count - first), first / 3 % 2});
+    return parts;
+}
+
+Shape add_spheres(Scene& scene, std::uint32_t count) {
+    Random random(count);
+    std::vector<glm::vec4> spheres;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const glm::vec3 centre(random.point(glm::dvec3(-1.0), glm::dvec3(1.0)));
+        spheres.emplace_back(centre, static_cast<float>(random.between(0.05, 0.5)));
+    }
+    return SphereSetInstance{
+        add_sphere_set(scene, make_sphere_set("spheres", std::move(spheres), striped(count)))};
+}
+
+// Cylinders, whole and truncated cones, slim and flat.
+Shape add_cones(Scene& scene, std::uint32_t count, bool capped) {
+    Random random(count);
+    std::vector<glm::vec4> ends;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const glm::dvec3 base = random.point(glm::dvec3(-1.0), glm::dvec3(1.0));
+        const glm::dvec3 apex = base + random.between(0.1, 1.2) * random.direction();
+        const double base_radius = random.between(0.02, 0.4);
+        const double apex_radius = i % 3 == 0   ? 0.0
+                                   : i % 3 == 1 ? base_radius
+                                                : random.between(0.02, 0.4);
+        ends.emplace_back(glm::vec3(base), static_cast<float>(base_radius));
+        ends.emplace_back(glm::vec3(apex), static_cast<float>(apex_radius));
+    }
+    return ConeSetInstance{
+        add_cone_set(scene, make_cone_set("cones", std::move(ends), capped, striped(count)))};
+}
+
 // A shape of each kind, about 2 wide around 0.
 struct NamedShape {
     const char* name;
@@ -59,6 +96,9 @@ const NamedShape kShapes[] = {
      [](Scene&) -> Shape {
          return Cone{{0.0, 0.1, 0.0}, {0.05, -0.2, 0.1}, 1.2, 0.6, false};
      }},
+    {"spheres", [](Scene& scene) -> Shape { return add_spheres(scene, 40); }},
+    {"open_cones", [](Scene& scene) -> Shape { return add_cones(scene, 30, false); }},
+    {"capped_cones", [](Scene& scene) -> Shape { return add_cones(scene, 30, true); }},
 };
 
 Material painted(const glm::vec3& colour) {
@@ -78,7 +118,8 @@ struct Paints {
 Scene instances(Scene scene, const NamedShape& kind, const Paints& paints) {
     const Shape shape = kind.add(scene);
     place(scene, Plane{{0.0, 1.0, 0.0}, 2.2}, paints.second);
-    place(scene, shape, paints.first);
+    // Sets have materials of their own.
+    place(scene, shape, parts_of(scene, shape).empty() ? paints.first : kNoMaterial);
     place(scene, shape, paints.second,
           translate({2.3, 0.4, -0.8}) * rotate(70, {0.3, 1, 0.4}) * scale({1.1, 0.5, 0.8}));
     place(scene, shape, paints.second,
@@ -105,8 +146,10 @@ Scene checked_instances(const NamedShape& kind) {
     m.map(MapSlot::diffuse).texture = checker;
     m.map(MapSlot::diffuse).u_row = {12.0f, 1.0f, 0.2f};
     m.map(MapSlot::diffuse).v_row = {-1.0f, 6.0f, 0.1f};
-    const MaterialId id = add_material(scene, m);
-    return instances(std::move(scene), kind, {id, id});
+    const MaterialId fine = add_material(scene, m);
+    m.map(MapSlot::diffuse).u_row.x = 5.0f;
+    const MaterialId coarse = add_material(scene, m);
+    return instances(std::move(scene), kind, {fine, coarse});
 }
 
 struct ViewPoint {

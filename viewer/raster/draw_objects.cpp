@@ -13,12 +13,7 @@ struct ShapeDraw {
     const Uniforms& uniforms;
 
     void operator()(const std::shared_ptr<const GpuMesh>& mesh) const {
-        const MeshNumbers numbers =
-            mesh_numbers(view, object.scene_from_object, object.object_from_scene);
-        set_space(numbers.object_from_scene);
-        uniforms.set("clip_from_object", numbers.clip_from_object);
-        uniforms.set("eye_high", numbers.eye_high);
-        uniforms.set("eye_low", numbers.eye_low);
+        set_mesh_numbers();
         for (const GpuMesh::Chunk& chunk : mesh->chunks()) {
             uniforms.set("first_primitive", static_cast<int>(chunk.first));
             uniforms.set("has_normals", static_cast<int>(chunk.has_normals));
@@ -82,6 +77,13 @@ struct ShapeDraw {
         draw_proxy();
     }
 
+    void operator()(const std::shared_ptr<const GpuSphereSet>& set) const { draw_set(set->chunks); }
+
+    void operator()(const std::shared_ptr<const GpuConeSet>& set) const {
+        uniforms.set("cone_capped", static_cast<int>(set->set.capped));
+        draw_set(set->chunks);
+    }
+
 private:
     void enter_unit_space() const {
         set_space(object.object_from_scene.linear);
@@ -93,6 +95,27 @@ private:
         uniforms.set("object_from_scene", glm::mat3(object_from_scene));
         if (!object.textured) return;
         uniforms.set("scene_from_object", glm::mat3(glm::inverse(object_from_scene)));
+    }
+
+    void set_mesh_numbers() const {
+        const MeshNumbers numbers =
+            mesh_numbers(view, object.scene_from_object, object.object_from_scene);
+        set_space(numbers.object_from_scene);
+        uniforms.set("clip_from_object", numbers.clip_from_object);
+        uniforms.set("eye_high", numbers.eye_high);
+        uniforms.set("eye_low", numbers.eye_low);
+    }
+
+    // Six vertices an element: see shaders/billboard.glsl.
+    void draw_set(const std::vector<SetChunk>& chunks) const {
+        set_mesh_numbers();
+        for (const SetChunk& chunk : chunks) {
+            uniforms.set("first_primitive", static_cast<int>(chunk.first));
+            uniforms.set("has_materials", static_cast<int>(chunk.has_materials));
+            bind(Unit::positions, GL_TEXTURE_BUFFER, chunk.elements.texture());
+            bind(Unit::triangles, GL_TEXTURE_BUFFER, chunk.materials.texture());
+            glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(6 * chunk.count));
+        }
     }
 
     // Back faces only: one fragment a pixel, also with the eye inside.

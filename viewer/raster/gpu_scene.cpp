@@ -24,6 +24,34 @@ std::vector<std::shared_ptr<const GpuMesh>> upload_meshes(const Scene& scene,
     return meshes;
 }
 
+// The same for sets; `upload` makes one.
+template <typename Set, typename Upload>
+std::vector<std::shared_ptr<const GpuSet<Set>>> upload_sets(
+    const std::vector<Set>& sets, const std::vector<std::shared_ptr<const GpuSet<Set>>>& before,
+    const Upload& upload) {
+    std::vector<std::shared_ptr<const GpuSet<Set>>> uploaded;
+    uploaded.reserve(sets.size());
+    for (SetId id = 0; id < sets.size(); ++id) {
+        const auto known = std::find_if(before.begin(), before.end(),
+                                        [&](const auto& other) { return holds(*other, sets[id]); });
+        uploaded.push_back(known != before.end() ? *known
+                                                 : std::make_shared<GpuSet<Set>>(upload(id)));
+    }
+    return uploaded;
+}
+
+// Nothing of it can be drawn.
+bool is_empty(const GpuScene& gpu, const Shape& shape) {
+    if (const auto* mesh = std::get_if<MeshInstance>(&shape)) {
+        return gpu.meshes[mesh->mesh]->chunks().empty();
+    }
+    if (const auto* spheres = std::get_if<SphereSetInstance>(&shape)) {
+        return gpu.sphere_sets[spheres->set]->chunks.empty();
+    }
+    const auto* cones = std::get_if<ConeSetInstance>(&shape);
+    return cones != nullptr && gpu.cone_sets[cones->set]->chunks.empty();
+}
+
 bool is_textured(const GpuScene& gpu, const Object& object) {
     if (object.material != kNoMaterial) return gpu.materials.is_textured(object.material);
     const std::span<const Part> parts = parts_of(*gpu.scene, object.shape);
@@ -67,6 +95,12 @@ struct ShapeDrawing {
         drawn.bounds = object_bounds(scene, object);
     }
     void operator()(const Plane& plane) const { drawn.shape = plane; }
+    void operator()(const SphereSetInstance& instance) const {
+        take_set(gpu.sphere_sets[instance.set]);
+    }
+    void operator()(const ConeSetInstance& instance) const {
+        take_set(gpu.cone_sets[instance.set]);
+    }
     template <typename FiniteShape>
     void operator()(const FiniteShape& shape) const {
         drawn.bounds = object_bounds(scene, object);
@@ -79,6 +113,12 @@ struct ShapeDrawing {
     }
 
 private:
+    template <typename Set>
+    void take_set(const std::shared_ptr<const GpuSet<Set>>& set) const {
+        drawn.shape = set;
+        drawn.bounds = world_bounds(drawn.scene_from_object, set->extent->min, set->extent->max);
+    }
+
     // From here on the object's space is another one.
     void move_into(const Transform& object_from_inner) const {
         drawn.scene_from_object = drawn.scene_from_object * object_from_inner;
@@ -105,12 +145,15 @@ GpuScene upload_scene(std::shared_ptr<const Scene> scene, const GpuScene& before
     GpuScene gpu;
     gpu.scene = std::move(scene);
     gpu.meshes = upload_meshes(*gpu.scene, before);
+    gpu.sphere_sets = upload_sets(gpu.scene->sphere_sets, before.sphere_sets, [&](SetId id) {
+        return upload_sphere_set(*gpu.scene, id, max_buffer_texels());
+    });
+    gpu.cone_sets = upload_sets(gpu.scene->cone_sets, before.cone_sets, [&](SetId id) {
+        return upload_cone_set(*gpu.scene, id, max_buffer_texels());
+    });
     gpu.materials = upload_materials(*gpu.scene);
     for (const Object& object : gpu.scene->objects) {
-        const auto* instance = std::get_if<MeshInstance>(&object.shape);
-        if (instance != nullptr && gpu.meshes[instance->mesh]->chunks().empty()) continue;
-        const bool drawable = object.shape.index() <= 7;  // TODO(raster)
-        if (drawable) gpu.objects.push_back(drawn_object(gpu, object));
+        if (!is_empty(gpu, object.shape)) gpu.objects.push_back(drawn_object(gpu, object));
     }
     gpu.textures = upload_textures(*gpu.scene, before.textures);
     gpu.sky = upload_sky(gpu.scene->environment, before.sky);

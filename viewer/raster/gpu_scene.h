@@ -4,6 +4,7 @@
 #include "tracer/scene/scene.h"
 #include "viewer/raster/gpu_materials.h"
 #include "viewer/raster/gpu_mesh.h"
+#include "viewer/raster/gpu_sets.h"
 #include "viewer/raster/gpu_sky.h"
 #include "viewer/raster/gpu_textures.h"
 #include "viewer/raster/unit_shapes.h"
@@ -16,8 +17,9 @@
 namespace raypick {
 
 // What a scene's object is to the rasteriser. Plain triangles are meshes of one.
-using DrawnShape = std::variant<std::shared_ptr<const GpuMesh>, Sphere, Box, Plane, UnitDisk,
-                                UnitSquare, UnitCone>;
+using DrawnShape =
+    std::variant<std::shared_ptr<const GpuMesh>, Sphere, Box, Plane, UnitDisk, UnitSquare, UnitCone,
+                 std::shared_ptr<const GpuSphereSet>, std::shared_ptr<const GpuConeSet>>;
 
 struct DrawnObject {
     ObjectId id = kNoObject;
@@ -34,14 +36,16 @@ struct DrawnObject {
 struct GpuScene {
     std::shared_ptr<const Scene> scene;
     std::vector<std::shared_ptr<const GpuMesh>> meshes;  // as in the scene; null: not drawn
-    std::vector<DrawnObject> objects;                    // ids ascending
+    std::vector<std::shared_ptr<const GpuSphereSet>> sphere_sets;
+    std::vector<std::shared_ptr<const GpuConeSet>> cone_sets;
+    std::vector<DrawnObject> objects;  // ids ascending
     GpuMaterials materials;
     std::shared_ptr<const GpuTextures> textures;
     std::shared_ptr<const GpuSky> sky;
 };
 
-// Meshes that `before` has on the GPU already stay there. Throws Error if an object's transform is
-// singular or the GPU has no room.
+// Meshes and sets that `before` has on the GPU already stay there. Throws Error if an object's
+// transform is singular or the GPU has no room.
 GpuScene upload_scene(std::shared_ptr<const Scene> scene, const GpuScene& before);
 
 }  // namespace raypick

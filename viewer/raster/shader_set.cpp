@@ -21,6 +21,9 @@ void bind_inputs(const Program& program) {
     const Uniforms uniforms(program);
     set_unit(uniforms, "triangles", Unit::triangles);
     set_unit(uniforms, "positions", Unit::positions);
+    // Sets have these two instead of positions and triangles.
+    set_unit(uniforms, "elements", Unit::positions);
+    set_unit(uniforms, "element_materials", Unit::triangles);
     set_unit(uniforms, "normals", Unit::normals);
     set_unit(uniforms, "uvs", Unit::uvs);
     set_unit(uniforms, "normal_t", Unit::normal_t);
@@ -40,10 +43,11 @@ struct ShapeShader {
     const char* define;
 };
 constexpr ShapeShader kShapes[kShapeKinds] = {
-    {"mesh.vert", "SHAPE_MESH"},  {"proxy.vert", "SHAPE_SPHERE"},
-    {"proxy.vert", "SHAPE_BOX"},  {"fullscreen.vert", "SHAPE_PLANE"},
-    {"proxy.vert", "SHAPE_DISK"}, {"proxy.vert", "SHAPE_RECTANGLE"},
-    {"proxy.vert", "SHAPE_CONE"}};
+    {"mesh.vert", "SHAPE_MESH"},        {"proxy.vert", "SHAPE_SPHERE"},
+    {"proxy.vert", "SHAPE_BOX"},        {"fullscreen.vert", "SHAPE_PLANE"},
+    {"proxy.vert", "SHAPE_DISK"},       {"proxy.vert", "SHAPE_RECTANGLE"},
+    {"proxy.vert", "SHAPE_CONE"},       {"sphere_set.vert", "SHAPE_SPHERE_SET"},
+    {"cone_set.vert", "SHAPE_CONE_SET"}};
 
 Program shape_program(const ShapeShader& shape, const char* fragment_file, bool textured) {
     std::vector<std::string> defines = {shape.define};
