@@ -41,6 +41,8 @@ bool is_there(inout Surface s) {
 #include "rectangle.glsl"
 #elif defined(SHAPE_CONE)
 #include "cone.glsl"
+#elif defined(SHAPE_TORUS)
+#include "torus.glsl"
 #elif defined(SHAPE_SPHERE_SET)
 #include "sphere_set.glsl"
 #elif defined(SHAPE_CONE_SET)

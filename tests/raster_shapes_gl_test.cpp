@@ -96,6 +96,18 @@ const NamedShape kShapes[] = {
      [](Scene&) -> Shape {
          return Cone{{0.0, 0.1, 0.0}, {0.05, -0.2, 0.1}, 1.2, 0.6, false};
      }},
+    {"torus",
+     [](Scene&) -> Shape {
+         return Torus{{0.0, 0.1, 0.05}, {0.3, 1.2, 0.5}, 0.8, 0.3};
+     }},
+    {"thin_torus",
+     [](Scene&) -> Shape {
+         return Torus{{0.1, 0.0, 0.0}, {1.0, 0.4, 0.6}, 1.1, 0.03};
+     }},
+    {"closed_torus",
+     [](Scene&) -> Shape {
+         return Torus{{0.0, 0.0, 0.1}, {0.2, -0.3, 1.0}, 0.6, 0.6};
+     }},
     {"spheres", [](Scene& scene) -> Shape { return add_spheres(scene, 40); }},
     {"open_cones", [](Scene& scene) -> Shape { return add_cones(scene, 30, false); }},
     {"capped_cones", [](Scene& scene) -> Shape { return add_cones(scene, 30, true); }},

@@ -6,6 +6,8 @@ namespace raypick {
 
 namespace {
 
+static_assert(std::variant_size_v<DrawnShape> == kShapeKinds);
+
 // Draws one object with the program in `uniforms`, which is current.
 struct ShapeDraw {
     const ViewNumbers& view;
@@ -74,6 +76,12 @@ struct ShapeDraw {
         uniforms.set("cone_base_radius", cone.base_radius);
         uniforms.set("cone_apex_radius", cone.apex_radius);
         uniforms.set("cone_capped", static_cast<int>(cone.capped));
+        draw_proxy();
+    }
+
+    void operator()(const UnitTorus& torus) const {
+        enter_unit_space();
+        uniforms.set("torus_minor_radius", torus.minor_radius);
         draw_proxy();
     }
 

@@ -106,7 +106,7 @@ struct ShapeDrawing {
         drawn.bounds = object_bounds(scene, object);
         if constexpr (std::is_constructible_v<DrawnShape, FiniteShape>) {
             drawn.shape = shape;
-        } else if constexpr (requires { unit_shape(shape); }) {
+        } else {
             drawn.shape = unit_shape(shape);
             move_into(object_from_unit(shape));
         }

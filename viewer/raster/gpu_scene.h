@@ -19,7 +19,7 @@ namespace raypick {
 // What a scene's object is to the rasteriser. Plain triangles are meshes of one.
 using DrawnShape =
     std::variant<std::shared_ptr<const GpuMesh>, Sphere, Box, Plane, UnitDisk, UnitSquare, UnitCone,
-                 std::shared_ptr<const GpuSphereSet>, std::shared_ptr<const GpuConeSet>>;
+                 UnitTorus, std::shared_ptr<const GpuSphereSet>, std::shared_ptr<const GpuConeSet>>;
 
 struct DrawnObject {
     ObjectId id = kNoObject;

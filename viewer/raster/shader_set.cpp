@@ -42,12 +42,16 @@ struct ShapeShader {
     const char* vertex_file;
     const char* define;
 };
-constexpr ShapeShader kShapes[kShapeKinds] = {
-    {"mesh.vert", "SHAPE_MESH"},        {"proxy.vert", "SHAPE_SPHERE"},
-    {"proxy.vert", "SHAPE_BOX"},        {"fullscreen.vert", "SHAPE_PLANE"},
-    {"proxy.vert", "SHAPE_DISK"},       {"proxy.vert", "SHAPE_RECTANGLE"},
-    {"proxy.vert", "SHAPE_CONE"},       {"sphere_set.vert", "SHAPE_SPHERE_SET"},
-    {"cone_set.vert", "SHAPE_CONE_SET"}};
+constexpr ShapeShader kShapes[kShapeKinds] = {{"mesh.vert", "SHAPE_MESH"},
+                                              {"proxy.vert", "SHAPE_SPHERE"},
+                                              {"proxy.vert", "SHAPE_BOX"},
+                                              {"fullscreen.vert", "SHAPE_PLANE"},
+                                              {"proxy.vert", "SHAPE_DISK"},
+                                              {"proxy.vert", "SHAPE_RECTANGLE"},
+                                              {"proxy.vert", "SHAPE_CONE"},
+                                              {"proxy.vert", "SHAPE_TORUS"},
+                                              {"sphere_set.vert", "SHAPE_SPHERE_SET"},
+                                              {"cone_set.vert", "SHAPE_CONE_SET"}};
 
 Program shape_program(const ShapeShader& shape, const char* fragment_file, bool textured) {
     std::vector<std::string> defines = {shape.define};

@@ -10,7 +10,7 @@
 namespace raypick {
 
 // In the order of DrawnShape's alternatives.
-inline constexpr std::size_t kShapeKinds = 9;
+inline constexpr std::size_t kShapeKinds = 10;
 
 // Which pass a shape's program is for.
 enum class Pass : std::size_t { depth, surface };

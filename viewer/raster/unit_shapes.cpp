@@ -36,6 +36,10 @@ UnitCone unit_shape(const Cone& cone) {
             static_cast<float>(cone.apex_radius / unit), cone.capped};
 }
 
+UnitTorus unit_shape(const Torus& torus) {
+    return {static_cast<float>(torus.minor_radius / torus.major_radius)};
+}
+
 Transform object_from_unit(const Disk& disk) {
     return in_frame(axis_frame(disk.normal), disk.centre, disk.radius);
 }
@@ -49,6 +53,10 @@ Transform object_from_unit(const Rectangle& rectangle) {
 
 Transform object_from_unit(const Cone& cone) {
     return in_frame(axis_frame(cone.apex - cone.base), cone.base, unit_of(cone));
+}
+
+Transform object_from_unit(const Torus& torus) {
+    return in_frame(axis_frame(torus.axis), torus.centre, torus.major_radius);
 }
 
 }  // namespace raypick

@@ -23,13 +23,20 @@ struct UnitCone {
     bool capped = true;
 };
 
+// Of major radius 1 around 0, about +y.
+struct UnitTorus {
+    float minor_radius = 0.25f;
+};
+
 UnitDisk unit_shape(const Disk& disk);
 UnitSquare unit_shape(const Rectangle& rectangle);
 UnitCone unit_shape(const Cone& cone);
+UnitTorus unit_shape(const Torus& torus);
 
 // The shape of the object is this map's image of its unit shape.
 Transform object_from_unit(const Disk& disk);
 Transform object_from_unit(const Rectangle& rectangle);
 Transform object_from_unit(const Cone& cone);
+Transform object_from_unit(const Torus& torus);
 
 }  // namespace raypick
