@@ -87,7 +87,8 @@ TEST_P(ModelAgreementTest, GlShowsWhatTheRaysHit) {
 
 INSTANTIATE_TEST_SUITE_P(Models, ModelAgreementTest,
                          ::testing::Values("stanford/bunny_binary.ply", "openfoam/motorBike.obj",
-                                           "bitterli/kitchen.glb", "gltf/CesiumMilkTruck.glb"),
+                                           "bitterli/kitchen.glb", "gltf/CesiumMilkTruck.glb",
+                                           "spd/balls.nff"),
                          [](const auto& test) {
                              return std::filesystem::path(test.param).stem().string();
                          });

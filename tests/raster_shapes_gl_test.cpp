@@ -7,7 +7,8 @@
 namespace raypick {
 namespace {
 
-constexpr ImageSize kSize{101, 139};
+constexpr ImageSize kSize{67, 91};
+constexpr ImageSize kLookSize{101, 139};  // one pixel on a texture's edge is less of it
 
 Transform sheared(double xy, double zy) {
     Transform map;
@@ -265,7 +266,7 @@ TEST_P(ShapeTest, IdsArePicks) {
         SCOPED_TRACE(view.name);
         const Pictures pictures = expect_ids(scene, view.camera);
         const std::vector<ObjectId>& shown = pictures.raster.object;
-        EXPECT_GT(std::count(shown.begin(), shown.end(), 1u), 100);
+        EXPECT_GT(std::count(shown.begin(), shown.end(), 1u), 40);
     }
 }
 
@@ -322,8 +323,8 @@ TEST_P(ShapeTest, HolesAreLookedThrough) {
 TEST_P(ShapeTest, LooksAsTraced) {
     for (const ViewPoint& view : kViews) {
         SCOPED_TRACE(view.name);
-        agree(plain_instances(GetParam()), view.camera, 2e-3, kSize);
-        agree(checked_instances(GetParam()), view.camera, 5e-3, kSize);
+        agree(plain_instances(GetParam()), view.camera, 2e-3, kLookSize);
+        agree(checked_instances(GetParam()), view.camera, 5e-3, kLookSize);
     }
 }
 

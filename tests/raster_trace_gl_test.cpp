@@ -95,6 +95,7 @@ TEST_P(ModelTest, LooksLikeTheTracedImage) {
 INSTANTIATE_TEST_SUITE_P(Models, ModelTest,
                          ::testing::Values("bitterli/kitchen.glb",
                                            "sweethome3d/poolTable/poolTable.obj", "gltf/statue.glb",
+                                           "spd/balls.nff", "spd/rings.nff",
                                            "assimp/glTF2/BoxTextured-glTF-Binary/BoxTextured.glb"),
                          [](const auto& test) {
                              return std::filesystem::path(test.param).stem().string();
