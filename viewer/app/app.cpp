@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
@@ -144,6 +145,8 @@ void App::take(Document document) {
     hover_ = {};
     message_.clear();
     document_ = std::move(document);
+    std::vector<std::string> coarser = view_.warnings();
+    std::move(coarser.begin(), coarser.end(), std::back_inserter(document_->warnings));
 }
 
 Camera App::first_camera(const Scene& scene) {

@@ -11,6 +11,8 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace raypick {
 
@@ -30,6 +32,8 @@ public:
     // Shows another scene from this camera.
     void set_scene(std::shared_ptr<const Accel> accel, const Camera& camera);
     [[nodiscard]] bool empty() const { return accel_ == nullptr; }
+    // What of the scene OpenGL shows coarser than it is.
+    [[nodiscard]] std::vector<std::string> warnings() const { return rasterizer_.warnings(); }
 
     [[nodiscard]] OrbitCamera& camera() { return camera_; }
     // Wheel steps towards what is shown at a point of the view (its centre: nothing).
