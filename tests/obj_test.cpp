@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <glm/geometric.hpp>
 
+#include <ctime>
+
 namespace raypick {
 namespace {
 
@@ -297,10 +299,10 @@ TEST_F(Obj, LargePolygonsTakeNoQuadraticTime) {
         gear += fmt::format(" {}", i + 1);
         tangle += fmt::format(" {}", random() % kCorners + 1);
     }
-    const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t begin = std::clock();  // processor time, whatever else the machine does
     const LoadedScene loaded = load("a.obj", text + gear + "\n" + tangle + "\n");
     EXPECT_EQ(placed_triangles(loaded.scene), 2u * (kCorners - 2));
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+    EXPECT_LT(std::clock() - begin, 20 * CLOCKS_PER_SEC);
 }
 
 // --- Materials ----------------------------------------------------------------------------------

@@ -269,7 +269,7 @@ TEST(RenderJob, SampledPixelIsWhoseSampleIsShown) {
 
 TEST(RenderJob, CancelStopsInMidFrame) {
     RenderSettings settings;
-    settings.depth = 500;
+    settings.depth = 100;
     RenderJob job(shared_accel(endless_scene()), Camera{}, {1500, 1500}, settings);
     std::this_thread::sleep_for(milliseconds(100));
     const auto asked = Clock::now();
@@ -316,7 +316,7 @@ TEST(RenderJob, CancelStopsWithinAPixel) {
 
 TEST(RenderJob, DestructorWhileRunning) {
     RenderSettings settings;
-    settings.depth = 500;
+    settings.depth = 100;
     for (int i = 0; i < 5; ++i) {
         auto job = std::make_unique<RenderJob>(shared_accel(endless_scene()), Camera{},
                                                ImageSize{600, 600}, settings);

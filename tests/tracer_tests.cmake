@@ -29,7 +29,6 @@ if(TARGET raypick_io)
     raypick_test(spd_oracle_test LABELS oracle data SOURCES spd_scenes.cpp TIMEOUT 600)
     raypick_test(povray_oracle_test LABELS oracle data SOURCES pov_scene.cpp TIMEOUT 600)
     raypick_test(invariance_test LABELS cpu data)
-    raypick_test(spd_oracle_test LABELS oracle data TIMEOUT 600)
     # Without Embree the test says so: skipped at home, failed in CI.
     raypick_test(embree_oracle_test LABELS oracle TIMEOUT 600)
     find_package(embree 3 QUIET)

@@ -21,7 +21,9 @@ enum class Sampling {
 enum class PixelFilter { box, tent, gaussian, mitchell };
 
 struct RenderSettings {
-    int depth = 5;  // longest chain of rays; the eye ray is depth 1
+    // Longest chain of rays; the eye ray is depth 1. Each takes about 2 kB of a thread's stack, so
+    // that some thousands are too many.
+    int depth = 5;
     bool shadows = true;
     bool reflections = true;
     bool refractions = true;

@@ -146,35 +146,42 @@ private:
     static constexpr int kMostHidden = 64;
 
     // What comes along a ray, at its origin.
-    glm::vec3 follow(const Ray& ray, const Path& path, int hidden = 0) {
+    glm::vec3 follow(const Ray& ray, const Path& path) {
         if (stop_.stop_requested()) return glm::vec3(0.0f);
         const auto hit = accel_.intersect(ray);
-        if (!hit) {
-            return environment_colour(scene_, ray.direction, path.cone.spread) *
-                   passed(scene_, path.interior.medium(scene_), ray.t_max);
-        }
-        return at_hit(ray, *hit, path, nullptr, hidden);
+        return hit ? at_hit(ray, *hit, path, nullptr) : beyond(ray, path);
     }
 
-    glm::vec3 at_hit(const Ray& ray, const Hit& hit, const Path& path, glm::vec3* normal,
-                     int hidden = 0) {
-        const SurfacePoint surface = surface_point(scene_, ray, hit);
-        const Boundary boundary = boundary_at(hit, surface, path.interior);
-        Path here = path;
-        here.interior = boundary.crossing.before;
-        here.cone.width = path.cone.at(hit.t);
-        const glm::vec3 share = passed(scene_, boundary.crossing.from, hit.t);
-        if (!boundary.is_there && hidden < kMostHidden) {
-            here.interior = boundary.crossing.after;
+    // What comes along a ray that hits nothing.
+    [[nodiscard]] glm::vec3 beyond(const Ray& ray, const Path& path) const {
+        return environment_colour(scene_, ray.direction, path.cone.spread) *
+               passed(scene_, path.interior.medium(scene_), ray.t_max);
+    }
+
+    // Goes on through surfaces that are hidden inside of glass of a higher priority.
+    glm::vec3 at_hit(Ray ray, Hit hit, Path path, glm::vec3* normal) {
+        glm::vec3 share(1.0f);
+        for (int hidden = 0;; ++hidden) {
+            const SurfacePoint surface = surface_point(scene_, ray, hit);
+            const Boundary boundary = boundary_at(hit, surface, path.interior);
+            share *= passed(scene_, boundary.crossing.from, hit.t);
+            path.cone.width = path.cone.at(hit.t);
+            if (boundary.is_there || hidden == kMostHidden) {
+                path.interior = boundary.crossing.before;
+                path.weight *= largest(share);
+                const ShadingPoint point = shading_point(scene_, surface, ray, path.cone.width);
+                if (normal != nullptr) *normal = point.normal;
+                return share * shade(point, boundary, path);
+            }
+            path.interior = boundary.crossing.after;
             Ray onwards;
             onwards.origin = offset_origin(surface, ray.direction);
             onwards.direction = ray.direction;
-            return share * follow(onwards, here, hidden + 1);
+            ray = onwards;
+            const auto next = accel_.intersect(ray);
+            if (!next) return share * beyond(ray, path);
+            hit = *next;
         }
-        const ShadingPoint point = shading_point(scene_, surface, ray, here.cone.width);
-        if (normal != nullptr) *normal = point.normal;
-        here.weight *= largest(share);
-        return share * shade(point, boundary, here);
     }
 
     Boundary boundary_at(const Hit& hit, const SurfacePoint& surface, const Interior& interior) {
