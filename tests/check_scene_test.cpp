@@ -4,12 +4,16 @@
 
 #include <gmock/gmock.h>
 
+#include <functional>
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace raypick {
 namespace {
 
 using testing::HasSubstr;
+using testing::StartsWith;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -71,6 +75,109 @@ TEST(CheckScene, BadLightsAreNamedWithTheirKey) {
     lamp.colour = glm::vec3(1.0f);
     lamp.attenuation = {0.0, 0.0, 0.0};
     EXPECT_THAT(complaint(lamp), HasSubstr("attenuation must not be all 0"));
+}
+
+// Every number of every light and of materials, each of them spoilt in every way.
+template <typename Part>
+struct Number {
+    std::string key;
+    std::function<void(Part&, float)> set;
+    bool may_be_negative = false;
+};
+
+template <typename Part>
+void expect_refused(const std::string& what, const std::vector<Number<Part>>& numbers) {
+    for (const Number<Part>& number : numbers) {
+        for (const float bad : {kNan, kInfinity, -kInfinity, -1.0f}) {
+            if (bad == -1.0f && number.may_be_negative) continue;
+            Part part;
+            part.name = "pane";
+            number.set(part, bad);
+            const std::string text = complaint(part);
+            EXPECT_THAT(text, StartsWith(what + " \"pane\": " + number.key)) << bad;
+            EXPECT_THAT(text, HasSubstr("not " + testing::PrintToString(bad)));
+        }
+    }
+}
+
+template <typename T>
+std::vector<Number<T>> attenuation_numbers() {
+    return {{"constant attenuation", [](T& l, float x) { l.attenuation.constant = x; }},
+            {"linear attenuation", [](T& l, float x) { l.attenuation.linear = x; }},
+            {"quadratic attenuation", [](T& l, float x) { l.attenuation.quadratic = x; }},
+            {"colour", [](T& l, float x) { l.colour.z = x; }}};
+}
+
+template <typename T>
+std::vector<Number<T>> with_attenuation(std::vector<Number<T>> numbers) {
+    for (Number<T>& number : attenuation_numbers<T>())
+        numbers.push_back(std::move(number));
+    return numbers;
+}
+
+TEST(CheckScene, NoNumberOfALightMayBeBad) {
+    expect_refused("light", with_attenuation<PointLight>(
+                                {{"position", [](auto& l, float x) { l.position.y = x; }, true}}));
+    expect_refused<DirectionalLight>(
+        "light", {{"direction", [](auto& l, float x) { l.direction.x = x; }, true},
+                  {"colour", [](auto& l, float x) { l.colour.x = x; }}});
+    expect_refused("light",
+                   with_attenuation<SpotLight>(
+                       {{"position", [](auto& l, float x) { l.position.y = x; }, true},
+                        {"direction", [](auto& l, float x) { l.direction.z = x; }, true},
+                        {"inner_degrees", [](auto& l, float x) { l.inner_degrees = x; }},
+                        {"outer_degrees", [](auto& l, float x) { l.outer_degrees = x; }}}));
+    expect_refused("light", with_attenuation<SphereLight>(
+                                {{"centre", [](auto& l, float x) { l.centre.y = x; }, true},
+                                 {"radius", [](auto& l, float x) { l.radius = x; }}}));
+    expect_refused("light", with_attenuation<RectangleLight>(
+                                {{"corner", [](auto& l, float x) { l.corner.y = x; }, true},
+                                 {"edge_u", [](auto& l, float x) { l.edge_u.y = x; }, true},
+                                 {"edge_v", [](auto& l, float x) { l.edge_v.y = x; }, true}}));
+}
+
+TEST(CheckScene, NoNumberOfAMaterialMayBeBad) {
+    expect_refused<Material>("material",
+                             {{"ambient", [](auto& m, float x) { m.ambient.x = x; }},
+                              {"diffuse", [](auto& m, float x) { m.diffuse.y = x; }},
+                              {"specular", [](auto& m, float x) { m.specular.z = x; }},
+                              {"shininess", [](auto& m, float x) { m.shininess = x; }},
+                              {"emissive", [](auto& m, float x) { m.emissive.x = x; }},
+                              {"reflect", [](auto& m, float x) { m.reflect.y = x; }},
+                              {"transmit", [](auto& m, float x) { m.transmit.z = x; }},
+                              {"absorption", [](auto& m, float x) { m.absorption.x = x; }},
+                              {"ior", [](auto& m, float x) { m.ior = x; }},
+                              {"opacity", [](auto& m, float x) { m.opacity = x; }},
+                              {"alpha_cutoff", [](auto& m, float x) { m.alpha_cutoff = x; }}});
+}
+
+TEST(CheckScene, SurroundingsAreCheckedToo) {
+    Scene scene;
+    scene.background.y = -1.0f;
+    EXPECT_EQ(complaint(scene), "the scene: background must be 0 or more, not -1");
+    scene = {};
+    scene.ambient.x = kNan;
+    EXPECT_THAT(complaint(scene), HasSubstr("ambient must be a finite number"));
+    scene = {};
+    GradientSky gradient;
+    gradient.horizon.z = kInfinity;
+    scene.environment = gradient;
+    EXPECT_THAT(complaint(scene), HasSubstr("the environment: horizon must be a finite number"));
+    gradient = {};
+    gradient.up = glm::dvec3(0.0);
+    scene.environment = gradient;
+    EXPECT_THAT(complaint(scene), HasSubstr("up must not be zero"));
+    ImageSky image;
+    image.forward = -3.0 * image.up;
+    scene.environment = image;
+    EXPECT_THAT(complaint(scene), HasSubstr("forward must not be parallel to up"));
+    EXPECT_THROW(make_sky_pixels(1, 2, {glm::vec3(1.0f), glm::vec3(1.0f, kNan, 0.0f)}), Error);
+    EXPECT_THROW(make_sky_pixels(1, 1, {glm::vec3(-1.0f)}), Error);
+    scene = {};
+    Checker checker;
+    checker.odd.w = kNan;
+    add_texture(scene, {"squares", checker});
+    EXPECT_THAT(complaint(scene), HasSubstr("texture \"squares\": odd must be between 0 and 1"));
 }
 
 TEST(CheckScene, BadMaterialsAreNamedWithTheirKey) {

@@ -448,6 +448,10 @@ TEST_F(SceneKeys, Environments) {
               "line 2: /environment/forward: forward must not be parallel to up");
     EXPECT_EQ(complaint_of(R"("environment": {"type": "sky"})"),
               "/environment/type: must be \"gradient\" or \"image\", not \"sky\"");
+    // One texel (NaN, 0, 0).
+    EXPECT_EQ(complaint_of(R"("environment": {"type": "image", "rows": 1, "cols": 1,
+                               "texels": "AADAfwAAAAAAAAAA"})"),
+              "line 2: /environment/texels: texel 0 holds nan: light is a finite number from 0 up");
     const LoadedScene lost =
         load("b.json", R"({"raypick": 1, "environment": {"type": "image", "file": "lost.hdr"}})");
     ASSERT_EQ(lost.warnings.size(), 1u);

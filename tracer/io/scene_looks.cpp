@@ -236,8 +236,12 @@ ImageSky read_image_sky(const JsonValue& value, const ImageFolder& images) {
                [&](const JsonValue& scale) { sky.scale = read_float(scale, kNotNegative); });
     if (is_embedded(value)) {
         const TexelCounts size = read_texel_counts(value);
-        sky.pixels =
-            make_sky_pixels(size.rows, size.cols, read_texels<glm::vec3, float>(value, size));
+        auto texels = read_texels<glm::vec3, float>(value, size);
+        try {
+            sky.pixels = make_sky_pixels(size.rows, size.cols, std::move(texels));
+        } catch (const Error& error) {
+            value.need("texels").fail(error.what());
+        }
         if_present(value, "source", [&](const JsonValue& file) { sky.file = file.text(); });
         return sky;
     }

@@ -277,6 +277,37 @@ void check_light(const RectangleLight& light) {
     check_samples(what, light.samples);
 }
 
+void check_environment(const std::monostate&) {}
+
+void check_environment(const GradientSky& sky) {
+    const std::string what = "the environment";
+    check_not_negative(what, "zenith", sky.zenith);
+    check_not_negative(what, "horizon", sky.horizon);
+    check_not_negative(what, "ground", sky.ground);
+    check_direction(what, "up", sky.up);
+}
+
+void check_environment(const ImageSky& sky) {
+    const std::string what = "the environment";
+    check_direction(what, "up", sky.up);
+    check_direction(what, "forward", sky.forward);
+    const glm::dvec3 across = glm::cross(glm::normalize(sky.up), glm::normalize(sky.forward));
+    if (!(glm::length(across) > 1e-12)) {
+        throw Error(what + ": forward must not be parallel to up");
+    }
+    check_not_negative(what, "scale", sky.scale);
+}
+
+void check_texture(const Texture& texture) {
+    const auto* checker = std::get_if<Checker>(&texture.source);
+    if (checker == nullptr) return;
+    const std::string what = describe("texture", texture.name);
+    for (int channel = 0; channel < 4; ++channel) {
+        check_fraction(what, "even", checker->even[channel]);
+        check_fraction(what, "odd", checker->odd[channel]);
+    }
+}
+
 void check_named_camera(const NamedCamera& named) {
     try {
         check_camera(named.camera);
@@ -321,8 +352,11 @@ void check_scene(const Scene& scene) {
     for (const NamedCamera& camera : scene.cameras)
         check_named_camera(camera);
     check_finite("the scene", "origin", scene.origin);
-    check_finite("the scene", "background", scene.background);
-    check_finite("the scene", "ambient", scene.ambient);
+    check_not_negative("the scene", "background", scene.background);
+    check_not_negative("the scene", "ambient", scene.ambient);
+    for (const Texture& texture : scene.textures)
+        check_texture(texture);
+    std::visit([](const auto& kind) { check_environment(kind); }, scene.environment);
 }
 
 }  // namespace raypick

@@ -70,6 +70,18 @@ SkyPixels halved(const SkyPixels& from) {
     return to;
 }
 
+// A NaN would spread over all of the mip chain.
+void check_light(const std::vector<glm::vec3>& texels) {
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+        for (int k = 0; k < 3; ++k) {
+            const float light = texels[i][k];
+            if (light >= 0.0f && std::isfinite(light)) continue;
+            throw Error(
+                fmt::format("texel {} holds {}: light is a finite number from 0 up", i, light));
+        }
+    }
+}
+
 // --- Sampling -----------------------------------------------------------------------------------
 
 // Beyond a pole the image goes on upside down on the other side of the sphere.
@@ -148,6 +160,7 @@ std::shared_ptr<const SkyPixels> make_sky_pixels(int rows, int cols,
         texels.size() != static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols)) {
         throw Error(fmt::format("{} texels are no image of {} x {}", texels.size(), cols, rows));
     }
+    check_light(texels);
     auto pixels = std::make_shared<SkyPixels>();
     pixels->rows = rows;
     pixels->cols = cols;

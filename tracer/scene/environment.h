@@ -29,7 +29,8 @@ struct SkyPixels {
     std::vector<SkyPixels> smaller;  // the mip chain: half the size each, down to 1 x 1
 };
 
-// With the mip chain, which wide rays are averaged by. Throws Error if the size doesn't fit.
+// With the mip chain, which wide rays are averaged by. Throws Error if the size doesn't fit or a
+// texel is negative or not finite.
 std::shared_ptr<const SkyPixels> make_sky_pixels(int rows, int cols, std::vector<glm::vec3> texels);
 
 struct ImageSky {

@@ -147,7 +147,8 @@ Camera choose_camera(const Scene& scene, ImageSize size, const CameraOverride& w
 std::vector<Light> effective_lights(const Scene& scene, const Camera& camera);
 
 // Throws Error that names the object, the key and the value if an id dangles, a number is not
-// finite, a radius is not positive, a normal is zero or a transform is singular.
+// finite, a colour is negative, a radius is not positive, a normal is zero or a transform is
+// singular.
 void check_scene(const Scene& scene);
 
 }  // namespace raypick
