@@ -65,8 +65,8 @@ struct Material {
     // What the inside absorbs per unit of length: exp(-absorption * distance) passes
     // (Beer-Lambert).
     glm::vec3 absorption{0.0f};
-    // Where the insides of two materials overlap, the higher priority is there (Schmidt, Budge,
-    // "Simple Nested Dielectrics in Ray Traced Images", 2002): glass 1 in water 0.
+    // Of overlapping insides the higher priority is there, of equal ones what was entered
+    // last. Source: Schmidt, Budge, "Simple Nested Dielectrics in Ray Traced Images", 2002.
     int priority = 0;
 
     float opacity = 1.0f;
