@@ -3,6 +3,7 @@ raypick_test(gl_handle_gl_test LABELS gl LIBS raypick_raster)
 raypick_test(rasterizer_gl_test LABELS gl LIBS raypick_raster)
 raypick_test(raster_light_gl_test LABELS gl LIBS raypick_raster)
 raypick_test(raster_shapes_gl_test LABELS gl LIBS raypick_raster)
+raypick_test(footprint_gl_test LABELS gl LIBS raypick_raster)
 raypick_test(raster_texture_gl_test LABELS gl LIBS raypick_raster)
 
 # These open model files.

@@ -1,6 +1,8 @@
 // Shapes that OpenGL draws by casting each pixel's ray: ids, primitives, distances and looks are
 // the tracer's, for turned, stretched, mirrored and sheared instances, from far and from inside.
 #include "tests/look_fixture.h"
+#include "viewer/gl/load_gl.h"
+#include "viewer/raster/gpu_scene.h"
 
 #include <cmath>
 
@@ -318,6 +320,52 @@ TEST_P(ShapeTest, HolesAreLookedThrough) {
         SCOPED_TRACE(view.name);
         expect_ids(scene, view.camera);
     }
+}
+
+// The bytes of a buffer, as elements.
+template <typename T>
+std::vector<T> read_buffer(const BufferTexture& texture) {
+    GLint bytes = 0;
+    glBindBuffer(GL_TEXTURE_BUFFER, texture.buffer());
+    glGetBufferParameteriv(GL_TEXTURE_BUFFER, GL_BUFFER_SIZE, &bytes);
+    std::vector<T> values(static_cast<std::size_t>(bytes) / sizeof(T));
+    glGetBufferSubData(GL_TEXTURE_BUFFER, 0, bytes, values.data());
+    glBindBuffer(GL_TEXTURE_BUFFER, 0);
+    return values;
+}
+
+TEST_F(LookTest, SetsBeyondTheGpusLimitAreSpreadOverDraws) {
+    Scene scene;
+    add_cones(scene, 30, true);
+    const GpuConeSet gpu = upload_cone_set(scene, 0, 9);  // four cones a draw
+    ASSERT_EQ(gpu.chunks.size(), 8u);
+    std::uint32_t next = 0;
+    for (const SetChunk& chunk : gpu.chunks) {
+        EXPECT_EQ(chunk.first, next);
+        const auto ends = read_buffer<glm::vec4>(chunk.elements);
+        const auto materials = read_buffer<MaterialId>(chunk.materials);
+        ASSERT_EQ(ends.size(), std::size_t{2} * chunk.count);
+        ASSERT_EQ(materials.size(), chunk.count);
+        for (std::uint32_t i = 0; i < chunk.count; ++i, ++next) {
+            EXPECT_EQ(ends[2 * i], scene.cone_sets[0].ends[2 * next]);
+            EXPECT_EQ(ends[2 * i + 1], scene.cone_sets[0].ends[2 * next + 1]);
+            EXPECT_EQ(materials[i], next / 3 % 2);
+        }
+    }
+    EXPECT_EQ(next, 30u);
+}
+
+TEST_F(LookTest, SetsStayOnTheGpuWhenTheSceneIsEdited) {
+    Scene scene;
+    place(scene, add_spheres(scene, 5), add_material(scene, painted(glm::vec3(0.5f))));
+    add_material(scene, painted(glm::vec3(0.4f)));
+    const GpuScene first = upload_scene(std::make_shared<const Scene>(scene), {});
+    scene.materials[0].diffuse = glm::vec3(0.9f);
+    const GpuScene second = upload_scene(std::make_shared<const Scene>(scene), first);
+    EXPECT_EQ(second.sphere_sets[0], first.sphere_sets[0]);
+    scene.sphere_sets[0].parts[0].material = 1;
+    const GpuScene third = upload_scene(std::make_shared<const Scene>(scene), second);
+    EXPECT_NE(third.sphere_sets[0], second.sphere_sets[0]);
 }
 
 TEST_P(ShapeTest, LooksAsTraced) {
