@@ -121,7 +121,7 @@ void EglContext::close() {
     if (context_ != nullptr) {
         egl.core<unsigned (*)(Display, void*)>("eglDestroyContext")(display_, context_);
     }
-    egl.core<unsigned (*)(Display)>("eglTerminate")(display_);
+    // The display stays open: it is the process's, and whoever else uses it doesn't count.
     display_ = nullptr;
 }
 
