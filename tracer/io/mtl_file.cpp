@@ -122,6 +122,13 @@ private:
         return value;
     }
 
+    float light(std::string_view what) {
+        const double value = number(what);
+        if (!(value >= 0.0))
+            scanner_.fail(fmt::format("{} must be 0 or more, not {}", what, value));
+        return static_cast<float>(value);
+    }
+
     // One number stands for all three. Spectral curves and CIE XYZ are not read.
     std::optional<glm::vec3> colour(std::string_view keyword) {
         const char first = scanner_.peek();
@@ -130,11 +137,11 @@ private:
                 fmt::format("{} is only read as red, green, blue: ignored", keyword)));
             return std::nullopt;
         }
-        glm::vec3 rgb(static_cast<float>(number(keyword)));
+        glm::vec3 rgb(light(keyword));
         const char next = scanner_.peek();
         if (next == '\n' || next == '#') return rgb;
-        rgb.y = static_cast<float>(number(keyword));
-        rgb.z = static_cast<float>(number(keyword));
+        rgb.y = light(keyword);
+        rgb.z = light(keyword);
         return rgb;
     }
 
