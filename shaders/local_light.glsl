@@ -11,9 +11,9 @@ struct Material {
 };
 
 // A highlight's base raised to the shininess. GLSL leaves pow(0, 0) undefined, so both sides take
-// 0 where the eye is not in the lobe.
+// 0 where the eye is not in the lobe. A cosine rounded to more than 1 would grow beyond bounds.
 float lobe_power(float lobe, float shininess) {
-    return lobe > 0.0 ? pow(lobe, shininess) : 0.0;
+    return lobe > 0.0 ? pow(min(lobe, 1.0), shininess) : 0.0;
 }
 
 // (R.V)^shininess with R the mirrored direction to the light.

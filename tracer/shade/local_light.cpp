@@ -2,15 +2,17 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace raypick {
 
 namespace {
 
-// GLSL leaves pow(0, 0) undefined, so both sides take 0 where the eye is not in the lobe.
+// GLSL leaves pow(0, 0) undefined, so both sides take 0 where the eye is not in the lobe. A cosine
+// rounded to more than 1 would grow beyond bounds.
 float highlight(float lobe, float shininess) {
-    return lobe > 0.0f ? std::pow(lobe, shininess) : 0.0f;
+    return lobe > 0.0f ? std::pow(std::min(lobe, 1.0f), shininess) : 0.0f;
 }
 
 }  // namespace
