@@ -76,7 +76,7 @@ TEST_F(BadInput, MaterialsOfObjFilesNameTheirLibraryAndLine) {
 // As far as check_scene lets them go, and in places where a formula divides or takes a root.
 TEST(AwkwardInput, GivesNumbersInEveryPixel) {
     for (const float shininess : {0.0f, 1e-30f, 1e30f}) {
-        for (const float ior : {1e-6f, 1.0f, 1.0000001f, 1e6f}) {
+        for (const float ior : {1e-6f, 1.0000001f, 1e6f}) {
             for (const auto reflectance :
                  {Reflectance::constant, Reflectance::dielectric, Reflectance::conductor}) {
                 for (const bool thin : {false, true}) {
@@ -99,19 +99,20 @@ TEST(AwkwardInput, GivesNumbersInEveryPixel) {
                     scene.lights = {PointLight{"a", {0, 0, 0}, glm::vec3(1.0f), {0, 0, 1}},
                                     PointLight{"b", {0, -1, 0}, glm::vec3(1.0f), {0, 1, 0}},
                                     SpotLight{"c", {0, 1, 0}, {0, -1, 0}, glm::vec3(1), {}, 0, 0},
-                                    SphereLight{"d", {0, -1, 0}, 2.0, glm::vec3(1.0f)}};
+                                    SphereLight{"d", {0, -1, 0}, 2.0, glm::vec3(1), {}, 1}};
                     for (const GlassShadows shadows :
                          {GlassShadows::opaque, GlassShadows::tinted}) {
                         RenderSettings settings;
                         settings.glass_shadows = shadows;
                         settings.cutoff = 0.01f;
                         settings.threads = 1;
+                        settings.depth = 4;
                         // From outside, from within and from a surface.
                         for (const double z : {5.0, 0.0, 1.0}) {
                             Camera camera;
                             camera.eye = {0, 0, z};
                             camera.at = {0.3, -0.2, -9};
-                            EXPECT_EQ(picture(scene, camera, {10, 14}, settings).nan_pixels, 0u);
+                            EXPECT_EQ(picture(scene, camera, {8, 11}, settings).nan_pixels, 0u);
                         }
                     }
                 }

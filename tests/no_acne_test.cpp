@@ -2,7 +2,6 @@
 #include "tests/tracer_scenes.h"
 #include "tracer/accel/accel.h"
 #include "tracer/accel/surface.h"
-#include "tracer/shade/trace.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +9,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
