@@ -142,7 +142,7 @@ TEST(GlassForms, TotalReflectionBeginsAtTheCriticalAngle) {
         const double critical = std::asin(1.0 / ior);
         const auto counts = [&](double angle) {
             Ray ray = ray_at(angle);
-            ray.origin *= 0.25f;  // inside
+            ray.origin *= 0.25f;      // inside
             RenderSettings settings;  // with the cutoff: only what carries light
             settings.depth = 2;
             return shoot(scene, ray, settings).counts;
