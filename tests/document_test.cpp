@@ -2,6 +2,7 @@
 #include "viewer/app/document.h"
 #include "needs.h"
 #include "program.h"
+#include "tracer/io/load.h"
 #include "viewer/app/picture_saver.h"
 
 #include <gmock/gmock.h>
@@ -93,9 +94,9 @@ TEST_F(DocumentTest, BigFilesAreGivenUpSoon) {
     EXPECT_LT(taken.count(), 5.0);
 }
 
-TEST(PictureSaverTest, WritesAndReportsFailure) {
+TEST(FileSaverTest, WritesAndReportsFailure) {
     const TemporaryFolder folder;
-    PictureSaver saver([] {});
+    FileSaver saver([] {});
     const Image image = make_image({3, 5});
     saver.save(image, folder / "a.png");
     std::optional<SaveResult> result = wait_for([&] { return saver.take_result(); });
@@ -109,7 +110,26 @@ TEST(PictureSaverTest, WritesAndReportsFailure) {
     EXPECT_FALSE(saver.busy());
 }
 
-TEST(PictureSaverTest, ScreenshotsNeverReplaceAFile) {
+TEST(FileSaverTest, WritesScenesAndSaysWhichKindFailed) {
+    const TemporaryFolder folder;
+    FileSaver saver([] {});
+    Scene scene;
+    add_object(scene, {.name = "ball", .shape = Sphere{}});
+    const auto accel = std::make_shared<const Accel>(std::make_shared<Scene>(std::move(scene)));
+    saver.save(accel, folder / "a.json");
+    std::optional<SaveResult> result = wait_for([&] { return saver.take_result(); });
+    ASSERT_TRUE(result.has_value());
+    EXPECT_EQ(result->error, "");
+    EXPECT_EQ(result->kind, SaveKind::scene);
+    EXPECT_EQ(load_scene(folder / "a.json").scene.objects.at(0).name, "ball");
+    saver.save(accel, folder / "no such folder" / "a.json");
+    result = wait_for([&] { return saver.take_result(); });
+    ASSERT_TRUE(result.has_value());
+    EXPECT_EQ(result->kind, SaveKind::scene);
+    EXPECT_THAT(result->error, HasSubstr("no such folder"));
+}
+
+TEST(FileSaverTest, ScreenshotsNeverReplaceAFile) {
     const TemporaryFolder folder;
     EXPECT_EQ(free_picture_name(folder.path(), "view"), folder / "view-1.png");
     std::ignore = folder.write("view-1.png", "");

@@ -322,13 +322,27 @@ TEST(Commands, FollowTheUsualKeys) {
     EXPECT_EQ(command_for(Key::f12, {}), Command::screenshot);
     EXPECT_EQ(command_for(Key::o, {.control = true}), Command::open);
     EXPECT_EQ(command_for(Key::s, {.control = true}), Command::save);
+    EXPECT_EQ(command_for(Key::s, {.shift = true, .control = true}), Command::save_scene);
+    EXPECT_EQ(command_for(Key::c, {.control = true}), Command::copy_view);
     EXPECT_EQ(command_for(Key::q, {.control = true}), Command::quit);
+}
+
+TEST(Commands, DigitsLookFromASideAndWithCtrlFromTheOther) {
+    EXPECT_EQ(command_for(Key::one, {}), Command::view_front);
+    EXPECT_EQ(command_for(Key::three, {}), Command::view_right);
+    EXPECT_EQ(command_for(Key::seven, {}), Command::view_top);
+    EXPECT_EQ(command_for(Key::one, {.control = true}), Command::view_back);
+    EXPECT_EQ(command_for(Key::three, {.control = true}), Command::view_left);
+    EXPECT_EQ(command_for(Key::seven, {.control = true}), Command::view_bottom);
+    EXPECT_EQ(command_for(Key::five, {}), Command::toggle_projection);
+    EXPECT_EQ(command_for(Key::five, {.control = true}), std::nullopt);
 }
 
 TEST(Commands, OtherCombinationsMeanNothing) {
     EXPECT_EQ(command_for(Key::q, {}), std::nullopt);
     EXPECT_EQ(command_for(Key::s, {}), std::nullopt);
     EXPECT_EQ(command_for(Key::r, {.control = true}), std::nullopt);
+    EXPECT_EQ(command_for(Key::s, {.shift = true}), std::nullopt);
     EXPECT_EQ(command_for(Key::tab, {.alt = true}), std::nullopt);
     EXPECT_EQ(command_for(Key::q, {.control = true, .alt = true}), std::nullopt);
 }

@@ -234,6 +234,40 @@ TEST_F(WindowTest, ScreenshotGoesToTheCurrentFolder) {
     EXPECT_THAT(read_file(folder_ / "default-1.png"), StartsWith("\x89PNG"));
 }
 
+TEST_F(WindowTest, KeyFiveShowsWhatTheOrthographicOptionShows) {
+    view(scene_);
+    const Pixel pixel{400, 450};
+    const auto screen = desktop_->screenshot();
+    desktop_->key("5");
+    ASSERT_TRUE(desktop_->wait_for_change(screen));
+    const json parallel = click(pixel);
+    EXPECT_TRUE(outline_is(true));
+    const ProgramResult command =
+        run_program({"pick", scene_.string(), resolution(), "--orthographic", "--pixel=400,450"});
+    EXPECT_EQ(parallel.value("object", "window"),
+              json::parse(command.out, nullptr, false).value("object", "command"))
+        << command.err;
+}
+
+TEST_F(WindowTest, TheSavedSceneIsWhatTheSaveCommandWrites) {
+    view(scene_);
+    desktop_->key("ctrl+shift+s");
+    ASSERT_TRUE(desktop_->wait_for_title("raypick - default.json - save"));
+    // A wrong ending is refused, and the dialog stays for another try.
+    desktop_->type("scene.obj");
+    desktop_->key("Return");
+    EXPECT_FALSE(desktop_->wait_for_title("raypick - default.json", 1.0));
+    desktop_->key("ctrl+a");
+    desktop_->type("from-window.json");
+    desktop_->key("Return");
+    ASSERT_TRUE(desktop_->wait_for_title("raypick - default.json"));
+    EXPECT_EQ(quit(), 0);  // not before the file is complete
+    const std::filesystem::path command = folder_ / "from-command.json";
+    ASSERT_EQ(run_program({"save", scene_.string(), "--output=" + command.string()}).exit_code, 0);
+    EXPECT_TRUE(read_file(folder_ / "from-window.json") == read_file(command));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "scene.obj"));
+}
+
 TEST_F(WindowTest, TwiceTheScaleTakesTwiceTheSpaceAndStillPicksRight) {
     view(scene_, 2.0);
     const Layout usual = lay_out(layout_.window, 1.0, true);

@@ -125,9 +125,12 @@ void App::take_results() {
     if (const std::optional<SaveResult> result = saver_.take_result()) {
         settle();
         if (result->error.empty()) {
-            message_ = fmt::format("Saved {}", result->file.string());
+            message_ = fmt::format("Saved {}", std::filesystem::absolute(result->file).string());
         } else {
-            complain("The picture can't be saved", result->error);
+            message_.clear();
+            complain(result->kind == SaveKind::scene ? "The scene can't be saved"
+                                                     : "The picture can't be saved",
+                     result->error);
         }
     }
 }
@@ -235,6 +238,9 @@ void App::apply(Command command) {
         case Command::save:
             ask_for_picture_name();
             break;
+        case Command::save_scene:
+            ask_for_scene_name();
+            break;
         case Command::screenshot:
             save_picture(free_picture_name("", picture_stem()));
             break;
@@ -285,9 +291,18 @@ std::string App::picture_stem() const {
 void App::ask_for_picture_name() {
     if (!view_.shown()) return;
     PathDialog dialog;
-    dialog.purpose = PathDialog::Purpose::save;
+    dialog.purpose = PathDialog::Purpose::save_picture;
     dialog.name = picture_stem() + ".png";
     dialog.subject = picture_description();
+    overlay_ = dialog;
+}
+
+void App::ask_for_scene_name() {
+    if (!document_) return;
+    PathDialog dialog;
+    dialog.purpose = PathDialog::Purpose::save_scene;
+    dialog.name = picture_stem() + ".json";
+    dialog.subject = "The whole scene in one JSON file, with its meshes and textures.";
     overlay_ = dialog;
 }
 
@@ -302,6 +317,15 @@ std::string App::picture_description() const {
                             static_cast<int>(100 * trace.progress.fraction));
     }
     return text;
+}
+
+void App::save_file(const PathDialog& dialog, const std::filesystem::path& file) {
+    if (dialog.purpose == PathDialog::Purpose::save_picture) {
+        save_picture(file);
+    } else if (document_ && !saver_.busy()) {
+        message_ = fmt::format("Saving {} ...", file.string());
+        saver_.save(document_->accel, file);
+    }
 }
 
 void App::save_picture(const std::filesystem::path& file) {
@@ -378,12 +402,11 @@ void App::draw_dialog() {
     // Confirmed only now, after what was typed before Enter has reached the text field.
     const OverlayAnswer answer = draw_overlay(overlay_, std::exchange(confirm_, false));
     if (answer.name) {
-        const bool saving = std::get<PathDialog>(overlay_).purpose == PathDialog::Purpose::save;
-        overlay_ = std::monostate{};
-        if (saving) {
-            save_picture(*answer.name);
-        } else {
+        const PathDialog dialog = std::get<PathDialog>(std::exchange(overlay_, std::monostate{}));
+        if (dialog.purpose == PathDialog::Purpose::open) {
             open(*answer.name);
+        } else {
+            save_file(dialog, *answer.name);
         }
     } else if (answer.close) {
         overlay_ = std::monostate{};
@@ -420,7 +443,7 @@ std::string App::title() const {
     }
     if (std::holds_alternative<MessageBox>(overlay_)) return title + " - error";
     if (const auto* dialog = std::get_if<PathDialog>(&overlay_)) {
-        const bool saving = dialog->purpose == PathDialog::Purpose::save;
+        const bool saving = dialog->purpose != PathDialog::Purpose::open;
         // Named once one can type.
         if (ui_.typing()) return title + (saving ? " - save" : " - open");
     }

@@ -56,6 +56,8 @@ private:
     void toggle_help();
     void frame_selected();
     void ask_for_picture_name();
+    void ask_for_scene_name();
+    void save_file(const PathDialog& dialog, const std::filesystem::path& file);
     void save_picture(const std::filesystem::path& file);
     [[nodiscard]] std::string picture_stem() const;
     // Of the shown frame.
@@ -81,7 +83,7 @@ private:
     UiSession ui_;
     SceneView view_;
     DocumentOpener opener_;
-    PictureSaver saver_;
+    FileSaver saver_;
 
     std::optional<Document> document_;
     ObjectId next_object_id_ = 0;

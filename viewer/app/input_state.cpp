@@ -22,7 +22,11 @@ bool has_area(const CursorAt& at, const ViewRect& view) {
 }  // namespace
 
 std::optional<Command> command_for(Key key, Modifiers modifiers) {
-    if (modifiers.alt || modifiers.shift) return std::nullopt;
+    if (modifiers.alt) return std::nullopt;
+    if (modifiers.shift) {
+        if (modifiers.control && key == Key::s) return Command::save_scene;
+        return std::nullopt;
+    }
     if (modifiers.control) {
         switch (key) {
             case Key::c:

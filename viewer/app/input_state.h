@@ -33,7 +33,8 @@ enum class Command {
     toggle_help,
     toggle_panels,
     open,
-    save,
+    save,        // the picture
+    save_scene,  // as JSON
     screenshot,
     quit
 };

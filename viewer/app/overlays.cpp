@@ -33,6 +33,7 @@ constexpr HelpLine kHelp[] = {
     {"stop the ray tracer", "Esc"},
     {"open a file", "Ctrl + O, or drop it on the window"},
     {"save the picture", "Ctrl + S"},
+    {"save the scene as JSON", "Ctrl + Shift + S"},
     {"screenshot to the current folder", "F12"},
     {"show or hide the panels", "Tab"},
     {"this page", "F1 or H"},
@@ -81,11 +82,19 @@ void draw_existing_note(const std::string& name) {
 
 std::string complaint_about(const PathDialog& dialog) {
     if (dialog.name.empty()) return "Give the file's name.";
-    return dialog.purpose == PathDialog::Purpose::save ? save_complaint(dialog.name) : "";
+    switch (dialog.purpose) {
+        case PathDialog::Purpose::save_picture:
+            return save_complaint(dialog.name);
+        case PathDialog::Purpose::save_scene:
+            return scene_complaint(dialog.name);
+        case PathDialog::Purpose::open:
+            break;
+    }
+    return "";
 }
 
 void draw_body(PathDialog& dialog, bool confirm, OverlayAnswer& answer) {
-    const bool saving = dialog.purpose == PathDialog::Purpose::save;
+    const bool saving = dialog.purpose != PathDialog::Purpose::open;
     if (!dialog.subject.empty()) draw_text(dialog.subject);
     ImGui::PushItemWidth(-1.0f);
     if (dialog.fresh) ImGui::SetKeyboardFocusHere();
@@ -93,7 +102,7 @@ void draw_body(PathDialog& dialog, bool confirm, OverlayAnswer& answer) {
     ImGui::InputText("##name", &dialog.name, ImGuiInputTextFlags_AutoSelectAll);
     ImGui::PopItemWidth();
     if (saving) {
-        draw_format_choice(dialog.name);
+        if (dialog.purpose == PathDialog::Purpose::save_picture) draw_format_choice(dialog.name);
         draw_existing_note(dialog.name);
     }
     if (!dialog.complaint.empty()) draw_error_text(dialog.complaint);
@@ -115,23 +124,40 @@ std::string title_of(const Overlay& overlay) {
         std::string operator()(const HelpSheet&) const { return "Mouse and keys"; }
         std::string operator()(const MessageBox& box) const { return box.title; }
         std::string operator()(const PathDialog& dialog) const {
-            return dialog.purpose == PathDialog::Purpose::save ? "Save the picture" : "Open a file";
+            switch (dialog.purpose) {
+                case PathDialog::Purpose::save_picture:
+                    return "Save the picture";
+                case PathDialog::Purpose::save_scene:
+                    return "Save the scene";
+                case PathDialog::Purpose::open:
+                    break;
+            }
+            return "Open a file";
         }
     };
     return std::visit(Titles{}, overlay);
 }
 
-}  // namespace
-
-std::string save_complaint(const std::string& name) {
-    std::string complaint = unsupported_image_name(name);
-    if (!complaint.empty()) return complaint;
+std::string folder_complaint(const std::string& name) {
     const std::filesystem::path folder = std::filesystem::path(name).parent_path();
     std::error_code error;
     if (!folder.empty() && !std::filesystem::is_directory(folder, error)) {
         return "There is no folder " + folder.string() + ".";
     }
     return "";
+}
+
+}  // namespace
+
+std::string save_complaint(const std::string& name) {
+    std::string complaint = unsupported_image_name(name);
+    return complaint.empty() ? folder_complaint(name) : complaint;
+}
+
+std::string scene_complaint(const std::string& name) {
+    // A scene that is called .obj would be read as one.
+    if (std::filesystem::path(name).extension() != ".json") return "The name must end in .json.";
+    return folder_complaint(name);
 }
 
 OverlayAnswer draw_overlay(Overlay& overlay, bool confirm) {

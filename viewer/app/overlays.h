@@ -19,11 +19,11 @@ struct MessageBox {
 
 // Asks for a file's name.
 struct PathDialog {
-    enum class Purpose { open, save };
+    enum class Purpose { open, save_picture, save_scene };
 
     Purpose purpose = Purpose::open;
     std::string name;
-    std::string subject;  // of a picture: what it shows
+    std::string subject;  // of what is saved: what it holds
     std::string complaint;
     bool fresh = true;  // not drawn yet
 };
@@ -41,5 +41,8 @@ OverlayAnswer draw_overlay(Overlay& overlay, bool confirm);
 
 // "" if a picture can be written to that name, else why not.
 std::string save_complaint(const std::string& name);
+
+// The same of a scene, which is written as JSON.
+std::string scene_complaint(const std::string& name);
 
 }  // namespace raypick

@@ -1,5 +1,7 @@
 #include "viewer/app/picture_saver.h"
 
+#include "tracer/io/save_scene.h"
+
 #include <fmt/format.h>
 
 #include <chrono>
@@ -8,21 +10,32 @@
 
 namespace raypick {
 
-void PictureSaver::save(Image image, const std::filesystem::path& file) {
-    if (busy()) return;
-    result_ = std::async(std::launch::async, [image = std::move(image), file, notify = notify_] {
-        SaveResult result{file, ""};
-        try {
-            write_image(image, file);
-        } catch (const std::exception& error) {
-            result.error = error.what();
-        }
-        notify();
-        return result;
-    });
+void FileSaver::save(Image image, const std::filesystem::path& file) {
+    start(SaveKind::picture, file, [image = std::move(image), file] { write_image(image, file); });
 }
 
-std::optional<SaveResult> PictureSaver::take_result() {
+void FileSaver::save(std::shared_ptr<const Accel> accel, const std::filesystem::path& file) {
+    start(SaveKind::scene, file,
+          [accel = std::move(accel), file] { save_scene(accel->scene(), file); });
+}
+
+void FileSaver::start(SaveKind kind, const std::filesystem::path& file,
+                      std::function<void()> write) {
+    if (busy()) return;
+    result_ =
+        std::async(std::launch::async, [kind, file, write = std::move(write), notify = notify_] {
+            SaveResult result{kind, file, ""};
+            try {
+                write();
+            } catch (const std::exception& error) {
+                result.error = error.what();
+            }
+            notify();
+            return result;
+        });
+}
+
+std::optional<SaveResult> FileSaver::take_result() {
     if (!busy() || result_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
         return std::nullopt;
     }

@@ -1,33 +1,42 @@
-// Writes pictures beside the running window.
+// Writes pictures and scenes beside the running window.
 #pragma once
 
+#include "tracer/accel/accel.h"
 #include "tracer/render/image.h"
 
 #include <filesystem>
 #include <functional>
 #include <future>
+#include <memory>
 #include <optional>
 #include <string>
 
 namespace raypick {
 
+enum class SaveKind { picture, scene };
+
 struct SaveResult {
+    SaveKind kind = SaveKind::picture;
     std::filesystem::path file;
     std::string error;  // "": it was written
 };
 
-class PictureSaver {
+class FileSaver {
 public:
     // `notify` is called from the working thread when a result is ready.
-    explicit PictureSaver(std::function<void()> notify) : notify_(std::move(notify)) {}
+    explicit FileSaver(std::function<void()> notify) : notify_(std::move(notify)) {}
 
-    // Begins to write; nothing happens while another picture is being written.
+    // Begin to write; nothing happens while another file is being written.
     void save(Image image, const std::filesystem::path& file);
+    // The scene that `accel` holds, as save_scene writes it.
+    void save(std::shared_ptr<const Accel> accel, const std::filesystem::path& file);
     [[nodiscard]] bool busy() const { return result_.valid(); }
     // The result, once.
     std::optional<SaveResult> take_result();
 
 private:
+    void start(SaveKind kind, const std::filesystem::path& file, std::function<void()> write);
+
     std::function<void()> notify_;
     std::future<SaveResult> result_;  // its destructor waits until the file is complete
 };
