@@ -91,13 +91,13 @@ def grid(rows, cols, texel):
 
 
 def planet(u, v):
-    height = octaves(u, v, 7, count=5)
+    height = octaves(u, v, 44, count=6)
     away = abs(v - 0.5) * 2 + 0.25 * (octaves(u, v, 30) - 0.5)
     if away > 0.84:
         return (0.93, 0.95, 0.97)
-    if height < 0.46:
-        return mix((0.03, 0.12, 0.35), (0.10, 0.38, 0.62), height / 0.46)
-    return mix((0.22, 0.48, 0.18), (0.72, 0.58, 0.36), (height - 0.46) / 0.14)
+    if height < 0.5:
+        return mix((0.03, 0.12, 0.35), (0.10, 0.38, 0.62), height / 0.5)
+    return mix((0.22, 0.48, 0.18), (0.72, 0.58, 0.36), (height - 0.5) / 0.2)
 
 
 def wood(u, v):
@@ -423,7 +423,7 @@ def sphere_flake():
 
 def main():
     folder = pathlib.Path(sys.argv[1])
-    png(folder / "planet.png", grid(64, 128, planet))
+    png(folder / "planet.png", grid(128, 256, planet))
     png(folder / "wood.png", grid(96, 96, wood))
     png(folder / "arrow.png", grid(64, 64, arrow))
     png(folder / "tiles.png", grid(128, 128, tile_colour))
