@@ -113,6 +113,7 @@ void draw_body(PathDialog& dialog, bool confirm, OverlayAnswer& answer) {
     if (confirmed) {
         dialog.complaint = complaint_about(dialog);
         if (dialog.complaint.empty()) answer.name = dialog.name;
+        dialog.fresh = true;  // Enter took the keyboard from the name, to be typed again
     }
 }
 
