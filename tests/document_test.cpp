@@ -3,7 +3,7 @@
 #include "needs.h"
 #include "program.h"
 #include "tracer/io/load.h"
-#include "viewer/app/picture_saver.h"
+#include "viewer/app/file_saver.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,9 +3,9 @@
 
 #include "picking/selection.h"
 #include "viewer/app/document.h"
+#include "viewer/app/file_saver.h"
 #include "viewer/app/layout.h"
 #include "viewer/app/overlays.h"
-#include "viewer/app/picture_saver.h"
 #include "viewer/app/scene_view.h"
 #include "viewer/app/ui_session.h"
 #include "viewer/app/view.h"

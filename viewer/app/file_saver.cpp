@@ -1,4 +1,4 @@
-#include "viewer/app/picture_saver.h"
+#include "viewer/app/file_saver.h"
 
 #include "tracer/io/save_scene.h"
 
