@@ -128,6 +128,19 @@ TEST_F(LookTest, EveryMapAtOnceWithTransformsAndRanges) {
     agree(still_life(std::move(scene), id), kView, 2e-3);
 }
 
+// Nothing but shapes: drawing them binds no texture of their own.
+TEST_F(LookTest, ShapesWithoutAnyMeshHaveTheirTexture) {
+    Scene scene;
+    Material m = matte();
+    m.map(MapSlot::diffuse) = map_of(add_image(scene, noise(5, 6, TexelCoding::srgb, 8)));
+    const MaterialId id = add_material(scene, m);
+    place(scene, Plane{{0.0, 1.0, 0.0}, 1.0}, id);
+    place(scene, Sphere{{-1.0, 0.0, 0.0}, 0.9}, id);
+    place(scene, Rectangle{{0.2, -0.8, 0.4}, {1.4, 0.2, -0.5}, {0.1, 1.6, -0.2}}, id);
+    add_lamps(scene);
+    agree(std::move(scene), kView, 2e-3);
+}
+
 // --- Wraps and filters --------------------------------------------------------------------------
 
 using SamplerCase = std::tuple<Wrap, Wrap, TextureFilter, TexelCoding>;

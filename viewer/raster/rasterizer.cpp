@@ -60,7 +60,7 @@ struct Rasterizer::State {
     void depth_pass(const ViewNumbers& view, std::span<const DrawnObject* const> objects);
     void surface_pass(const ViewNumbers& view, std::span<const DrawnObject* const> objects,
                       TieRule ties);
-    void shade_pass(const Camera& camera, const ViewNumbers& view);
+    void shade_pass(const GpuLights& lights);
     void bind_materials() const;
 };
 
@@ -109,8 +109,7 @@ void Rasterizer::State::bind_materials() const {
     bind(Unit::texels, GL_TEXTURE_BUFFER, scene.textures->texels.texture());
 }
 
-void Rasterizer::State::shade_pass(const Camera& camera, const ViewNumbers& view) {
-    const GpuLights lights = upload_lights(effective_lights(*scene.scene, camera), view.eye);
+void Rasterizer::State::shade_pass(const GpuLights& lights) {
     glBindFramebuffer(GL_FRAMEBUFFER, frame.colour.name());
     bind(Unit::normal_t, GL_TEXTURE_2D, frame.normal_t.name());
     bind(Unit::material, GL_TEXTURE_2D, frame.material.name());
@@ -165,13 +164,17 @@ void Rasterizer::draw(const Camera& camera, ImageSize size, std::uint32_t mask, 
             objects.push_back(&object);
         }
     }
+    // Whatever makes a texture binds it to the active unit: before the units have what is drawn
+    // with.
+    const GpuLights lights =
+        upload_lights(effective_lights(*state_->scene.scene, camera), view.eye);
     glViewport(0, 0, size.cols, size.rows);
     glBindVertexArray(state_->no_vertices.name());
     state_->frame.clear();
     state_->bind_materials();
     if (ties == TieRule::kept) state_->depth_pass(view, objects);
     state_->surface_pass(view, objects, ties);
-    state_->shade_pass(camera, view);
+    state_->shade_pass(lights);
     glBindVertexArray(0);
     glUseProgram(0);
     glActiveTexture(GL_TEXTURE0);
