@@ -5,13 +5,11 @@
 #include "tracer/io/save_scene.h"
 #include "tracer/render/render_job.h"
 
+#include "gallery_files.h"
 #include "model_files.h"
-#include "needs.h"
 
 #include <gmock/gmock.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cstring>
 #include <set>
 #include <utility>
@@ -20,18 +18,6 @@ namespace raypick {
 namespace {
 
 constexpr ImageSize kSize{20, 32};
-
-std::vector<std::string> gallery() {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(asset("gallery"))) {
-        const std::string ending = entry.path().extension().string();
-        if (ending == ".json" || ending == ".nff") {
-            names.push_back(entry.path().filename().string());
-        }
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-}
 
 RenderedFrame traced(Scene scene) {
     auto shared = std::make_shared<const Scene>(std::move(scene));
@@ -79,14 +65,7 @@ TEST_P(Gallery, ComesBackFromASavedFile) {
     EXPECT_EQ(std::memcmp(before.data(), after.data(), before.size() * sizeof(before[0])), 0);
 }
 
-std::string test_name(const testing::TestParamInfo<std::string>& info) {
-    std::string name = info.param;
-    for (char& c : name)
-        if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
-    return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Scenes, Gallery, testing::ValuesIn(gallery()), test_name);
+INSTANTIATE_TEST_SUITE_P(Scenes, Gallery, testing::ValuesIn(gallery_files()), gallery_test_name);
 
 }  // namespace
 }  // namespace raypick
