@@ -14,7 +14,6 @@
 #include <atomic>
 #include <filesystem>
 #include <fstream>
-#include <regex>
 #include <set>
 
 namespace raypick {
@@ -49,7 +48,10 @@ protected:
     }
     // The complaint without the line that it begins with where it isn't a syntax error.
     [[nodiscard]] std::string complaint(const std::string& text) const {
-        return std::regex_replace(complaint_with_line(text), std::regex("^line [0-9]+: "), "");
+        const std::string whole = complaint_with_line(text);
+        const std::size_t digits = whole.find_first_not_of("0123456789", 5);
+        const bool has_line = whole.starts_with("line ") && whole.find(": ", 5) == digits;
+        return has_line ? whole.substr(digits + 2) : whole;
     }
     // The complaint without the file's name, which it must begin with.
     [[nodiscard]] std::string complaint_with_line(const std::string& text) const {

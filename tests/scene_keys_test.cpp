@@ -6,8 +6,6 @@
 #include <gmock/gmock.h>
 #include <glm/geometric.hpp>
 
-#include <regex>
-
 namespace raypick {
 namespace {
 
@@ -26,7 +24,8 @@ protected:
     std::string complaint_of(const std::string& members) {
         const std::string text =
             complaint("a.json", fmt::format(R"({{"raypick": 1, {}}})", members));
-        return std::regex_replace(text, std::regex("^line 1: "), "");
+        const std::string line = "line 1: ";
+        return text.starts_with(line) ? text.substr(line.size()) : text;
     }
     std::string of_object(const std::string& object) {
         return complaint_of(fmt::format(R"("objects": [{}])", object));

@@ -331,7 +331,7 @@ private:
         ray.t_max = light.distance * static_cast<float>(1.0 - 2.0 * kTieGap);
         glm::vec3 share(0.0f);
         if (settings_.glass_shadows == GlassShadows::tinted) {
-            share = transmittance(scene_, accel_, ray, path.interior, path.cone.width);
+            share = transmittance(ray, path.interior, path.cone.width);
         } else {
             share = glm::vec3(accel_.occluded(ray) ? 0.0f : 1.0f);
         }
@@ -340,12 +340,12 @@ private:
     }
 
     // Straight through all glass; 0 if anything else is in the way.
-    [[nodiscard]] glm::vec3 transmittance(const Scene& scene, const Accel& accel, const Ray& ray,
-                                          const Interior& interior, float width) const {
+    [[nodiscard]] glm::vec3 transmittance(const Ray& ray, const Interior& interior,
+                                          float width) const {
         std::vector<Hit> crossed;
         const auto opaque = [&](const Hit& hit) {
-            const Object& object = scene.objects[object_index(scene, hit.object)];
-            const Material& kind = material(scene, material_id(scene, object, hit.primitive));
+            const Object& object = scene_.objects[object_index(scene_, hit.object)];
+            const Material& kind = material(scene_, material_id(scene_, object, hit.primitive));
             const bool see_through =
                 kind.transmits() || (kind.alpha_mode == AlphaMode::blend &&
                                      (kind.opacity < 1.0f || kind.map(MapSlot::opacity)));
@@ -354,7 +354,7 @@ private:
         };
         RayQuery query;
         query.accept = opaque;
-        if (accel.occluded(ray, query)) return glm::vec3(0.0f);
+        if (accel_.occluded(ray, query)) return glm::vec3(0.0f);
         std::sort(crossed.begin(), crossed.end(), [](const Hit& a, const Hit& b) {
             return std::tie(a.t, a.object, a.primitive) < std::tie(b.t, b.object, b.primitive);
         });
