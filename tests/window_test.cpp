@@ -253,14 +253,6 @@ TEST_F(WindowTest, TheSavedSceneIsWhatTheSaveCommandWrites) {
     view(scene_);
     desktop_->key("ctrl+shift+s");
     ASSERT_TRUE(desktop_->wait_for_title("raypick - default.json - save"));
-    // A wrong ending is refused, and the dialog stays for another try.
-    desktop_->type("scene.obj");
-    desktop_->key("Return");
-    EXPECT_FALSE(desktop_->wait_for_title("raypick - default.json", 1.0));
-    desktop_->key("ctrl+a");
-    // Keys of one frame come after its text (Dear ImGui 1.86), so the text must come in a later
-    // one.
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
     desktop_->type("from-window.json");
     desktop_->key("Return");
     ASSERT_TRUE(desktop_->wait_for_title("raypick - default.json"));
@@ -269,7 +261,6 @@ TEST_F(WindowTest, TheSavedSceneIsWhatTheSaveCommandWrites) {
     ASSERT_EQ(run_program({"save", scene_.string(), "--output=" + command.string()}).exit_code, 0);
     ASSERT_EQ(folder_.names(), (std::vector<std::string>{"from-command.json", "from-window.json"}));
     EXPECT_TRUE(read_file(folder_ / "from-window.json") == read_file(command));
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "scene.obj"));
 }
 
 TEST_F(WindowTest, TwiceTheScaleTakesTwiceTheSpaceAndStillPicksRight) {
