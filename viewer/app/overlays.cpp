@@ -97,8 +97,8 @@ void draw_body(PathDialog& dialog, bool confirm, OverlayAnswer& answer) {
     const bool saving = dialog.purpose != PathDialog::Purpose::open;
     if (!dialog.subject.empty()) draw_text(dialog.subject);
     ImGui::PushItemWidth(-1.0f);
-    if (dialog.fresh) ImGui::SetKeyboardFocusHere();
-    dialog.fresh = false;
+    if (dialog.wants_keyboard) ImGui::SetKeyboardFocusHere();
+    dialog.wants_keyboard = false;
     ImGui::InputText("##name", &dialog.name, ImGuiInputTextFlags_AutoSelectAll);
     ImGui::PopItemWidth();
     if (saving) {
@@ -113,7 +113,7 @@ void draw_body(PathDialog& dialog, bool confirm, OverlayAnswer& answer) {
     if (confirmed) {
         dialog.complaint = complaint_about(dialog);
         if (dialog.complaint.empty()) answer.name = dialog.name;
-        dialog.fresh = true;  // Enter took the keyboard from the name, to be typed again
+        dialog.wants_keyboard = true;  // which Enter took from the name
     }
 }
 

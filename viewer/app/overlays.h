@@ -25,7 +25,7 @@ struct PathDialog {
     std::string name;
     std::string subject;  // of what is saved: what it holds
     std::string complaint;
-    bool fresh = true;  // not drawn yet
+    bool wants_keyboard = true;  // for its name, in the next frame
 };
 
 using Overlay = std::variant<std::monostate, HelpSheet, MessageBox, PathDialog>;
