@@ -12,7 +12,8 @@ const int kTransmitMap = 4;
 const int kOpacityMap = 5;
 const int kEmissiveMap = 6;
 const int kNormalMap = 7;
-const int kMapSlots = 8;
+const int kAmbientMap = 8;
+const int kMapSlots = 9;
 
 // What stands before a material's maps.
 struct MapBlock {

@@ -20,6 +20,9 @@ const int kRepeat = 0;
 const int kClamp = 1;
 const int kMirror = 2;
 
+const int kLinear = 1;  // TexelCoding; 0 is sRGB
+const int kLogarithmic = 2;
+
 // What a pixel covers of a surface in its uv: an ellipse's axes, full widths.
 struct Footprint {
     vec2 major;
@@ -52,7 +55,7 @@ float tap_offset(int i, int n) {
 // --- Images -------------------------------------------------------------------------------------
 
 struct TextureImage {
-    bool srgb;
+    int coding;  // TexelCoding of tracer/scene/texel_coding.h
     int levels;
     int first_level;  // in texture_table
 };
@@ -91,7 +94,8 @@ vec4 texel(TextureImage image, TextureMap map, TextureLevel level, int col, int 
     int place = wrapped_texel(row, level.rows, map.wrap_v) * level.cols +
                 wrapped_texel(col, level.cols, map.wrap_u);
     vec4 c = texelFetch(texels, level.first + place);
-    if (!image.srgb) return c;
+    if (image.coding == kLinear) return c;
+    if (image.coding == kLogarithmic) return vec4(exp2(13.0 * (c.rgb - 1.0)), c.a);
     return vec4(linear_from_srgb(c.r), linear_from_srgb(c.g), linear_from_srgb(c.b), c.a);
 }
 
@@ -199,7 +203,7 @@ vec4 sample_texel(TextureMap map, vec2 uv, Footprint covered) {
     vec2 b = vec2(dot(map.u_row.xy, covered.minor), dot(map.v_row.xy, covered.minor));
     uvec4 entry = texelFetch(texture_table, 3 * map.texture);
     if (entry.x == kImageTexture) {
-        return image_average(TextureImage(entry.y != 0u, int(entry.z), int(entry.w)), map, t, a, b);
+        return image_average(TextureImage(int(entry.y), int(entry.z), int(entry.w)), map, t, a, b);
     }
     vec4 even = uintBitsToFloat(texelFetch(texture_table, 3 * map.texture + 1));
     vec4 odd = uintBitsToFloat(texelFetch(texture_table, 3 * map.texture + 2));

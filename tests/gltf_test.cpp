@@ -477,6 +477,85 @@ TEST_F(GltfMaterials, EmissiveUnlitAndBlended) {
     expect_near(material(veil).diffuse, glm::vec3(1.0f));
 }
 
+// One row of texels as a TGA image.
+std::string tga_row(const std::vector<glm::u8vec3>& texels) {
+    std::string bytes(18, '\0');
+    bytes[2] = 2;  // true colour
+    bytes[12] = static_cast<char>(texels.size());
+    bytes[14] = 1;
+    bytes[16] = 24;
+    for (const glm::u8vec3& c : texels)
+        bytes += {static_cast<char>(c.z), static_cast<char>(c.y), static_cast<char>(c.x)};
+    return bytes;
+}
+
+// The material at the middle of texel `i` of `count` in a row.
+Material at_texel(const Scene& scene, Material m, int i, std::size_t count) {
+    const glm::vec2 uv((static_cast<float>(i) + 0.5f) / static_cast<float>(count), 0.5f);
+    const auto texel = [&](MapSlot slot) {
+        const TextureMap& map = m.map(slot);
+        return map ? sample(scene.textures[map.texture], map, uv) : glm::vec4(1.0f);
+    };
+    const bool own = static_cast<bool>(m.map(MapSlot::ambient));
+    m.ambient *= glm::vec3(texel(own ? MapSlot::ambient : MapSlot::diffuse));
+    m.diffuse *= glm::vec3(texel(MapSlot::diffuse));
+    m.specular *= glm::vec3(texel(MapSlot::specular));
+    m.shininess *= texel(MapSlot::shininess).x;
+    m.reflect *= glm::vec3(texel(MapSlot::reflect));
+    m.transmit *= glm::vec3(texel(MapSlot::transmit));
+    return m;
+}
+
+void expect_alike(const glm::vec3& a, const glm::vec3& b, const char* what) {
+    EXPECT_LT(glm::distance(a, b), 0.01f)
+        << fmt::format("{}: {} {} {}, not {} {} {}", what, a.x, a.y, a.z, b.x, b.y, b.z);
+}
+
+// Green is roughness, blue is metal: what a texture says at a texel is what factors would say.
+TEST_F(GltfMaterials, ATextureOfMetalAndRoughnessIsTheFactorsOfEachTexel) {
+    struct Case {
+        const char* name;
+        std::vector<glm::u8vec3> texels;
+        double transmission = 0.0;
+    };
+    const std::vector<Case> cases = {
+        {"metal", {{0, 255, 255}, {0, 230, 255}, {0, 210, 255}, {0, 128, 255}, {0, 20, 255}}},
+        {"rough", {{0, 255, 255}, {0, 255, 0}, {0, 255, 128}, {0, 255, 30}}},
+        {"mixed", {{0, 255, 0}, {0, 200, 255}, {0, 100, 128}, {0, 0, 255}}},
+        {"plastic", {{0, 255, 0}, {0, 190, 0}, {0, 20, 0}}},
+        {"glass", {{0, 255, 0}, {0, 190, 0}, {0, 0, 255}}, 0.75},
+    };
+    for (const Case& test : cases) {
+        SCOPED_TRACE(test.name);
+        Json factors = pbr({{"baseColorFactor", {0.8, 0.5, 0.3, 1}}});
+        factors["extensions"]["KHR_materials_transmission"]["transmissionFactor"] =
+            test.transmission;
+        Model model = placed_square();
+        model.json["textures"] = {{{"source", 0}}};
+        model.json["images"] = {{{"uri", "data:image/tga;base64," + base64(tga_row(test.texels))}}};
+        Json textured = factors;
+        textured["pbrMetallicRoughness"]["metallicRoughnessTexture"]["index"] = 0;
+        model.json["materials"] = {textured};
+        const LoadedScene loaded = load_model(model);
+        EXPECT_THAT(loaded.warnings, IsEmpty());
+        for (std::size_t i = 0; i < test.texels.size(); ++i) {
+            SCOPED_TRACE(i);
+            factors["pbrMetallicRoughness"]["roughnessFactor"] = test.texels[i].y / 255.0;
+            factors["pbrMetallicRoughness"]["metallicFactor"] = test.texels[i].z / 255.0;
+            const Material expected = material(factors);
+            const Material m = at_texel(loaded.scene, loaded.scene.materials.at(0),
+                                        static_cast<int>(i), test.texels.size());
+            expect_alike(m.diffuse, expected.diffuse, "diffuse");
+            expect_alike(m.ambient, expected.ambient, "ambient");
+            expect_alike(m.specular, expected.specular, "specular");
+            expect_alike(m.reflect, expected.reflect, "reflect");
+            expect_alike(m.transmit, expected.transmit, "transmit");
+            EXPECT_NEAR(m.shininess / expected.shininess, 1.0f, 0.02f) << expected.shininess;
+            EXPECT_GE(m.shininess, 1.0f);
+        }
+    }
+}
+
 // --- Cameras and lights -------------------------------------------------------------------------
 
 TEST_F(Gltf, CamerasLookAlongMinusZOfTheirNode) {

@@ -102,6 +102,7 @@ TEST_P(MapSlotTest, LooksAsTraced) {
 
 INSTANTIATE_TEST_SUITE_P(Slots, MapSlotTest,
                          ::testing::Values(SlotCase{"diffuse", MapSlot::diffuse},
+                                           SlotCase{"ambient", MapSlot::ambient},
                                            SlotCase{"specular", MapSlot::specular},
                                            SlotCase{"shininess", MapSlot::shininess},
                                            SlotCase{"opacity", MapSlot::opacity},
@@ -109,13 +110,26 @@ INSTANTIATE_TEST_SUITE_P(Slots, MapSlotTest,
                                            SlotCase{"normal", MapSlot::normal}),
                          [](const auto& test) { return std::string(test.param.name); });
 
+// Where a map would leave an exponent below 1 it is 1, in both.
+TEST_F(LookTest, ExponentsByTheirLogarithmAndNoneBelowOne) {
+    for (const TexelCoding coding : {TexelCoding::logarithmic, TexelCoding::linear}) {
+        Scene scene;
+        Material m = matte();
+        m.diffuse = glm::vec3(0.1f);
+        m.shininess = coding == TexelCoding::logarithmic ? kLogarithmicSpan : 2.0f;
+        m.map(MapSlot::shininess) = map_of(add_image(scene, noise(3, 3, coding, 5)));
+        const MaterialId id = add_material(scene, m);
+        agree(still_life(std::move(scene), id), kView, 2e-3);
+    }
+}
+
 TEST_F(LookTest, EveryMapAtOnceWithTransformsAndRanges) {
     Scene scene;
     Material m = matte();
     m.emissive = glm::vec3(0.1f);
     std::uint64_t seed = 0;
-    for (const MapSlot slot : {MapSlot::diffuse, MapSlot::specular, MapSlot::shininess,
-                               MapSlot::emissive, MapSlot::normal}) {
+    for (const MapSlot slot : {MapSlot::diffuse, MapSlot::ambient, MapSlot::specular,
+                               MapSlot::shininess, MapSlot::emissive, MapSlot::normal}) {
         TextureMap map = map_of(add_image(scene, noise(4, 7, TexelCoding::linear, ++seed)));
         map.u_row = {1.3f, 0.2f * static_cast<float>(seed), 0.3f};
         map.v_row = {-0.4f, 0.9f, -0.2f};
@@ -171,6 +185,7 @@ INSTANTIATE_TEST_SUITE_P(
         SamplerCase{Wrap::repeat, Wrap::repeat, TextureFilter::linear, TexelCoding::srgb},
         SamplerCase{Wrap::clamp, Wrap::mirror, TextureFilter::linear, TexelCoding::srgb},
         SamplerCase{Wrap::mirror, Wrap::clamp, TextureFilter::linear, TexelCoding::linear},
+        SamplerCase{Wrap::repeat, Wrap::mirror, TextureFilter::linear, TexelCoding::logarithmic},
         SamplerCase{Wrap::repeat, Wrap::repeat, TextureFilter::nearest, TexelCoding::srgb},
         SamplerCase{Wrap::clamp, Wrap::mirror, TextureFilter::nearest, TexelCoding::linear},
         SamplerCase{Wrap::mirror, Wrap::clamp, TextureFilter::nearest, TexelCoding::srgb}));

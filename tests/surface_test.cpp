@@ -1,6 +1,7 @@
 #include "tracer/accel/surface.h"
 
 #include "tests/tracer_scenes.h"
+#include "tracer/shade/textured.h"
 
 #include <gtest/gtest.h>
 
@@ -297,6 +298,28 @@ TEST(OffsetOrigin, TwoSheetsCloseTogetherStayApart) {
     const std::optional<Hit> layer = accel.intersect(up);
     ASSERT_TRUE(layer.has_value());
     EXPECT_EQ(layer->object, 1u);
+}
+
+// Shining all over is what an exponent of 0 would do.
+TEST(Textured, MapsLeaveNoExponentBelowOneAndAmbientToItsOwnMap) {
+    Scene scene;
+    const TextureId squares = add_texture(scene, {"squares", Checker{}});
+    Material m;
+    m.shininess = 50.0f;
+    m.ambient = m.diffuse = glm::vec3(0.5f);
+    m.map(MapSlot::shininess).texture = m.map(MapSlot::diffuse).texture = squares;
+    SurfacePoint black;
+    black.texture_uv = {1.5f, 0.5f};
+    black.shading_normal = black.geometric_normal = {0, 0, 1};
+    const auto at = [&] { return textured(scene, m, black, {0, 0, -1}, 0.0f); };
+    EXPECT_EQ(at().shininess, 1.0f);
+    EXPECT_EQ(at().ambient, glm::vec3(0.0f));
+    m.shininess = 0.5f;
+    EXPECT_EQ(at().shininess, 0.5f) << "which the scene itself asks for";
+    m.map(MapSlot::ambient).texture = squares;
+    m.map(MapSlot::ambient).base = 0.25f;
+    EXPECT_EQ(at().ambient, glm::vec3(0.125f));
+    EXPECT_EQ(at().diffuse, glm::vec3(0.0f));
 }
 
 }  // namespace

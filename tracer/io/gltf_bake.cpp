@@ -1,6 +1,6 @@
 #include "tracer/io/gltf_bake.h"
 
-#include "tracer/scene/srgb.h"
+#include "tracer/scene/texel_coding.h"
 
 #include <glm/common.hpp>
 
@@ -64,6 +64,8 @@ glm::vec3 PbrBaker::value(PbrTerm term, int row, int col) const {
     switch (term) {
         case PbrTerm::diffuse:
             return terms.diffuse;
+        case PbrTerm::ambient:
+            return terms.ambient;
         case PbrTerm::specular:
             return terms.specular;
         case PbrTerm::shininess:
@@ -89,14 +91,14 @@ TermRange PbrBaker::range(PbrTerm term) const {
     return range;
 }
 
-ByteImage PbrBaker::bake(PbrTerm term, float largest) const {
-    const SrgbEncoder srgb;
+ByteImage PbrBaker::bake(PbrTerm term, float largest, TexelCoding coding) const {
+    const TexelEncoder coded(coding);
     ByteImage image{rows_, cols_, {}};
     image.texels.reserve(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(cols_));
     for (int row = 0; row < rows_; ++row) {
         for (int col = 0; col < cols_; ++col) {
             const glm::vec3 x = value(term, row, col) / largest;
-            image.texels.emplace_back(srgb.byte(x.x), srgb.byte(x.y), srgb.byte(x.z), 255);
+            image.texels.emplace_back(coded.byte(x.x), coded.byte(x.y), coded.byte(x.z), 255);
         }
     }
     return image;

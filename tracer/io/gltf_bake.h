@@ -15,7 +15,7 @@ struct PbrImages {
     std::shared_ptr<const ByteImage> transmission;        // linear: r
 };
 
-enum class PbrTerm { diffuse, specular, shininess, reflect, transmit };
+enum class PbrTerm { diffuse, ambient, specular, shininess, reflect, transmit };
 
 // One term over the whole image.
 struct TermRange {
@@ -33,9 +33,8 @@ public:
     PbrBaker(PbrImages images, const PbrValues& factors);
 
     [[nodiscard]] TermRange range(PbrTerm term) const;
-    // The term divided by `largest`, as sRGB bytes: they are finer for small values, which
-    // shininess has many of.
-    [[nodiscard]] ByteImage bake(PbrTerm term, float largest) const;
+    // The term divided by `largest`.
+    [[nodiscard]] ByteImage bake(PbrTerm term, float largest, TexelCoding coding) const;
 
 private:
     [[nodiscard]] PhongTerms at(int row, int col) const;

@@ -1,7 +1,5 @@
 #include "tracer/io/gltf_textures.h"
 
-#include "tracer/io/gltf_bake.h"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -24,8 +22,12 @@ float first_fraction(const ByteImage& image, int channel) {
 void set_term(Material& material, PbrTerm term, const glm::vec3& value, const TextureMap& map) {
     switch (term) {
         case PbrTerm::diffuse:
-            material.diffuse = material.ambient = value;
+            material.diffuse = value;
             material.map(MapSlot::diffuse) = map;
+            break;
+        case PbrTerm::ambient:
+            material.ambient = value;
+            material.map(MapSlot::ambient) = map;
             break;
         case PbrTerm::specular:
             material.specular = value;
@@ -166,11 +168,8 @@ void GltfTextures::bake_terms(const Wish& wish, Material& material) {
     const Image& placed = wish.base                 ? *wish.base
                           : wish.metallic_roughness ? *wish.metallic_roughness
                                                     : *wish.transmission;
-    struct NamedTerm {
-        PbrTerm term;
-        const char* name;
-    };
-    constexpr std::array<NamedTerm, 5> kTerms = {{{PbrTerm::diffuse, "diffuse"},
+    constexpr std::array<NamedTerm, 6> kTerms = {{{PbrTerm::diffuse, "diffuse"},
+                                                  {PbrTerm::ambient, "ambient"},
                                                   {PbrTerm::specular, "specular"},
                                                   {PbrTerm::shininess, "shininess"},
                                                   {PbrTerm::reflect, "reflect"},
@@ -179,23 +178,34 @@ void GltfTextures::bake_terms(const Wish& wish, Material& material) {
         if (only_colour && named.term != PbrTerm::specular && named.term != PbrTerm::reflect) {
             continue;
         }
-        const TermRange range = baker->range(named.term);
-        TextureMap map;
-        glm::vec3 value = range.most;
-        if (range.varies()) {
-            map = placed.use;
-            value = glm::vec3(range.largest());
-            map.texture = library_.baked(
-                fmt::format("{} {} of material {}", wish.gltf.name, named.name, wish.material),
-                TexelCoding::srgb, [baker, term = named.term, largest = value.x] {
-                    return baker->bake(term, largest);
-                });
-        }
-        set_term(material, named.term, value, map);
+        bake_term(wish, placed.use, baker, named, material);
     }
     if (material.reflectance == Reflectance::constant && material.reflects()) {
         material.reflectance = Reflectance::conductor;
     }
+}
+
+// A term that is the same all over needs no map: but where diffuse has one, ambient must have its
+// own, so as not to be multiplied by that.
+void GltfTextures::bake_term(const Wish& wish, const TextureMap& placed,
+                             const std::shared_ptr<const PbrBaker>& baker, const NamedTerm& named,
+                             Material& material) {
+    const TermRange range = baker->range(named.term);
+    const bool under_diffuse =
+        named.term == PbrTerm::ambient && material.map(MapSlot::diffuse) && range.largest() > 0.0f;
+    if (!range.varies() && !under_diffuse) {
+        set_term(material, named.term, range.most, {});
+        return;
+    }
+    const bool exponents = named.term == PbrTerm::shininess;
+    const TexelCoding coding = exponents ? TexelCoding::logarithmic : TexelCoding::srgb;
+    // From 1 to 8192 whatever the image has of it, so that a texel is never less than 1.
+    const float largest = exponents ? kLogarithmicSpan : range.largest();
+    TextureMap map = placed;
+    map.texture = library_.baked(
+        fmt::format("{} {} of material {}", wish.gltf.name, named.name, wish.material), coding,
+        [baker, term = named.term, largest, coding] { return baker->bake(term, largest, coding); });
+    set_term(material, named.term, glm::vec3(largest), map);
 }
 
 // The alpha of the base colour.

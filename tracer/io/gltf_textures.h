@@ -1,8 +1,9 @@
 // The maps of glTF materials made textures of the scene. Where a term of our material is no product
 // with the base colour's texture, it is worked out texel by texel: a metallic-roughness texture
-// becomes maps of diffuse, specular, shininess, reflect and transmit.
+// becomes maps of diffuse, ambient, specular, shininess, reflect and transmit.
 #pragma once
 
+#include "tracer/io/gltf_bake.h"
 #include "tracer/io/imported_material.h"
 #include "tracer/io/texture_library.h"
 
@@ -25,6 +26,10 @@ public:
     void finish(const LoadOptions& options, float progress_begin, float progress_end);
 
 private:
+    struct NamedTerm {
+        PbrTerm term;
+        const char* name;
+    };
     // The map's image in the library.
     struct Image {
         TextureLibrary::ImageNumber number = 0;
@@ -46,6 +51,9 @@ private:
     void drop_uniform(Wish& wish) const;
     void give_terms(const Wish& wish, Material& material);
     void bake_terms(const Wish& wish, Material& material);
+    void bake_term(const Wish& wish, const TextureMap& placed,
+                   const std::shared_ptr<const PbrBaker>& baker, const NamedTerm& named,
+                   Material& material);
     void give_alpha(const Wish& wish, Material& material);
     [[nodiscard]] TextureMap shown(const Image& image);
 

@@ -9,8 +9,10 @@ namespace raypick {
 namespace {
 
 // By MapSlot, and by the values of the enumerations.
-constexpr std::array<const char*, kMapSlots> kSlotNames{
-    "diffuse", "specular", "shininess", "reflect", "transmit", "opacity", "emissive", "normal"};
+constexpr std::array<const char*, kMapSlots> kSlotNames{"diffuse",  "specular", "shininess",
+                                                        "reflect",  "transmit", "opacity",
+                                                        "emissive", "normal",   "ambient"};
+constexpr std::array<const char*, 3> kCodingNames{"srgb", "linear", "logarithmic"};
 constexpr std::array<const char*, 3> kWrapNames{"repeat", "clamp", "mirror"};
 constexpr std::array<const char*, 3> kReflectanceNames{"constant", "dielectric", "conductor"};
 
@@ -25,7 +27,9 @@ void write_source(JsonWriter& json, const std::filesystem::path& file) {
 
 void write_image(JsonWriter& json, const ImageTexture& image) {
     write_member(json, "type", "image");
-    if (image.pixels->coding == TexelCoding::linear) write_member(json, "coding", "linear");
+    if (image.pixels->coding != TexelCoding::srgb) {
+        write_member(json, "coding", name_of(kCodingNames, image.pixels->coding));
+    }
     const TextureLevel& level = image.pixels->levels.at(0);
     write_member(json, "rows", static_cast<std::uint32_t>(level.rows));
     write_member(json, "cols", static_cast<std::uint32_t>(level.cols));

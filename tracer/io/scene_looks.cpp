@@ -20,8 +20,9 @@ constexpr NumberRule kChannel{0.0, 3.0, true, "a channel: 0, 1, 2 or 3"};
 constexpr NumberRule kPriority{-1e9, 1e9, true, "a whole number between -1e9 and 1e9"};
 
 // By MapSlot.
-const std::array<std::string_view, kMapSlots> kSlotNames{
-    "diffuse", "specular", "shininess", "reflect", "transmit", "opacity", "emissive", "normal"};
+const std::array<std::string_view, kMapSlots> kSlotNames{"diffuse",  "specular", "shininess",
+                                                         "reflect",  "transmit", "opacity",
+                                                         "emissive", "normal",   "ambient"};
 
 void warn(const JsonValue& value, const ImageFolder& images, const Error& error,
           std::string_view instead) {
@@ -69,7 +70,7 @@ ImageTexture read_image_texture(const JsonValue& value, const ImageFolder& image
                     Keys{"name", "type", "file", "coding", "rows", "cols", "texels", "source"});
     TexelCoding coding = TexelCoding::srgb;
     if_present(value, "coding", [&](const JsonValue& word) {
-        coding = read_word<TexelCoding>(word, {"srgb", "linear"});
+        coding = read_word<TexelCoding>(word, {"srgb", "linear", "logarithmic"});
     });
     ImageTexture image;
     if (is_embedded(value)) {

@@ -4,9 +4,7 @@
 #include "tracer/io/file_bytes.h"
 #include "tracer/scene/srgb.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <new>
 #include <utility>
 
@@ -27,19 +25,14 @@ auto of_file(const std::filesystem::path& file, const Make& make) {
     }
 }
 
-std::uint8_t rounded_byte(float value) {
-    return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
-}
-
 std::vector<glm::u8vec4> bytes_of(const FloatImage& image, TexelCoding coding) {
-    const SrgbEncoder srgb;
-    const auto byte = [&](float value) {
-        return coding == TexelCoding::srgb ? srgb.byte(value) : rounded_byte(value);
-    };
+    const TexelEncoder coded(coding);
+    const TexelEncoder alpha(TexelCoding::linear);
     std::vector<glm::u8vec4> texels;
     texels.reserve(image.texels.size());
-    for (const glm::vec4& c : image.texels)
-        texels.emplace_back(byte(c.x), byte(c.y), byte(c.z), rounded_byte(c.w));
+    for (const glm::vec4& c : image.texels) {
+        texels.emplace_back(coded.byte(c.x), coded.byte(c.y), coded.byte(c.z), alpha.byte(c.w));
+    }
     return texels;
 }
 

@@ -31,16 +31,17 @@ enum class AlphaMode {
 
 // What a texture map of a material multiplies.
 enum class MapSlot : std::size_t {
-    diffuse,  // also ambient
+    diffuse,  // also ambient, where that has no map of its own
     specular,
-    shininess,  // one channel
+    shininess,  // one channel; leaves no less than 1, or than the material has
     reflect,
     transmit,
     opacity,  // one channel
     emissive,
     normal,  // tangent space, [0, 1] for [-1, 1] (glTF): x along u, y along v; gain scales x and y
+    ambient,
 };
-inline constexpr std::size_t kMapSlots = 8;
+inline constexpr std::size_t kMapSlots = 9;
 
 // Phong's model with the notes' recursive terms:
 //   colour = emissive + ambient * scene ambient

@@ -1,7 +1,5 @@
 #include "tracer/scene/texture.h"
 
-#include "tracer/scene/srgb.h"
-
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -72,7 +70,7 @@ int wrapped(int i, int n, Wrap wrap) {
 class ImageSampler {
 public:
     ImageSampler(const TexturePixels& pixels, const TextureMap& map)
-        : pixels_(pixels), map_(map), linear_(srgb_to_linear_table()) {}
+        : pixels_(pixels), map_(map), values_(texel_values(pixels.coding)) {}
 
     // Averages around t over the parallelogram of the axes a and b (texture coordinates).
     [[nodiscard]] glm::vec4 average(const glm::vec2& t, glm::vec2 a, glm::vec2 b) const {
@@ -135,13 +133,13 @@ private:
                            static_cast<std::size_t>(wrapped(col, level.cols, map_.wrap_u));
         const glm::u8vec4& c = pixels_.texels[level.first + place];
         if (pixels_.coding == TexelCoding::linear) return glm::vec4(c) * (1.0f / 255.0f);
-        return {linear_[c.x], linear_[c.y], linear_[c.z],
+        return {values_[c.x], values_[c.y], values_[c.z],
                 static_cast<float>(c.w) * (1.0f / 255.0f)};
     }
 
     const TexturePixels& pixels_;
     const TextureMap& map_;
-    const std::array<float, 256>& linear_;
+    const std::array<float, 256>& values_;
 };
 
 // --- Checker ------------------------------------------------------------------------------------

@@ -4,6 +4,8 @@
 // The GLSL twin of sample() is in shaders/texture.glsl.
 #pragma once
 
+#include "tracer/scene/texel_coding.h"
+
 #include <glm/gtc/type_precision.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -20,9 +22,6 @@ namespace raypick {
 
 using TextureId = std::uint32_t;
 inline constexpr TextureId kNoTexture = 0xffffffffu;
-
-// Colours are stored as sRGB bytes, other numbers (normals, opacity) as they are.
-enum class TexelCoding { srgb, linear };
 
 // One image of a mip chain: texels [first, first + rows * cols), row 0 on top.
 struct TextureLevel {

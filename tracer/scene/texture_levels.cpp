@@ -1,6 +1,5 @@
 // The mip chain of an image.
 #include "tracer/error.h"
-#include "tracer/scene/srgb.h"
 #include "tracer/scene/texture.h"
 
 #include <fmt/format.h>
@@ -58,12 +57,12 @@ public:
                 sum[i] += share * (*values_)[first + i];
             return;
         }
-        const std::array<float, 256>& linear = srgb_to_linear_table();
+        const std::array<float, 256>& values = texel_values(coding_);
         for (std::size_t i = 0; i < sum.size(); ++i) {
             const glm::u8vec4& c = (*bytes_)[first + i];
             const glm::vec4 value = coding_ == TexelCoding::linear
                                         ? glm::vec4(c) * (1.0f / 255.0f)
-                                        : glm::vec4(linear[c.x], linear[c.y], linear[c.z],
+                                        : glm::vec4(values[c.x], values[c.y], values[c.z],
                                                     static_cast<float>(c.w) * (1.0f / 255.0f));
             sum[i] += share * value;
         }
@@ -98,15 +97,12 @@ std::vector<glm::vec4> halved(const LinearRows& rows, const TextureLevel& from,
     return result;
 }
 
-std::uint8_t linear_byte(float value) {
-    return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
-}
-
-void append(const std::vector<glm::vec4>& values, const SrgbEncoder& srgb, TexturePixels& pixels) {
+void append(const std::vector<glm::vec4>& values, const TexelEncoder& coded,
+            TexturePixels& pixels) {
+    const TexelEncoder alpha(TexelCoding::linear);
     for (const glm::vec4& c : values) {
-        const bool linear = pixels.coding == TexelCoding::linear;
-        const auto byte = [&](float x) { return linear ? linear_byte(x) : srgb.byte(x); };
-        pixels.texels.emplace_back(byte(c.x), byte(c.y), byte(c.z), linear_byte(c.w));
+        pixels.texels.emplace_back(coded.byte(c.x), coded.byte(c.y), coded.byte(c.z),
+                                   alpha.byte(c.w));
     }
 }
 
@@ -123,7 +119,7 @@ std::shared_ptr<const TexturePixels> make_texture_pixels(int rows, int cols,
     pixels->coding = coding;
     pixels->levels = {{rows, cols, 0}};
     pixels->texels = std::move(texels);
-    const SrgbEncoder srgb;
+    const TexelEncoder coded(coding);
     std::vector<glm::vec4> values;  // of the level before, not rounded to bytes; empty: the image
     while (rows > 1 || cols > 1) {
         const TextureLevel from = pixels->levels.back();
@@ -134,7 +130,7 @@ std::shared_ptr<const TexturePixels> make_texture_pixels(int rows, int cols,
                                        : LinearRows(values, from.cols),
                         from, to);
         pixels->levels.push_back(to);
-        append(values, srgb, *pixels);
+        append(values, coded, *pixels);
     }
     return pixels;
 }

@@ -69,12 +69,13 @@ SurfaceMaterial textured(const Scene& scene, const Material& material, const Sur
     const MapsAt maps(scene, material, surface, footprint(surface, direction, width));
     if (const TextureMap& map = material.map(MapSlot::diffuse)) {
         const glm::vec3 texel(maps.texel(map));
-        at.ambient *= texel;
+        if (!material.map(MapSlot::ambient)) at.ambient *= texel;
         at.diffuse *= texel;
     }
+    maps.multiply(MapSlot::ambient, at.ambient);
     maps.multiply(MapSlot::specular, at.specular);
     maps.multiply(MapSlot::shininess, at.shininess);
-    at.shininess = std::max(at.shininess, 0.0f);
+    at.shininess = std::max(at.shininess, std::min(material.shininess, 1.0f));
     maps.multiply(MapSlot::reflect, at.reflect);
     maps.multiply(MapSlot::transmit, at.transmit);
     maps.multiply(MapSlot::emissive, at.emissive);

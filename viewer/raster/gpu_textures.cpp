@@ -92,8 +92,8 @@ struct TableEntry {
         const auto image = std::find_if(images.begin(), images.end(), [&](const auto& other) {
             return other.pixels == texture.pixels;
         });
-        table.emplace_back(0, image->pixels->coding == TexelCoding::srgb ? 1 : 0,
-                           image->level_count(), image->first_level);
+        table.emplace_back(0, static_cast<glm::uint>(image->pixels->coding), image->level_count(),
+                           image->first_level);
         table.resize(table.size() + 2);
     }
     void operator()(const Checker& checker) const {

@@ -13,9 +13,9 @@ namespace raypick {
 
 // Read by shaders/texture.glsl.
 struct GpuTextures {
-    BufferTexture texels;  // RGBA8, as stored (sRGB or linear); row 0 of a level on top
+    BufferTexture texels;  // RGBA8, as stored; row 0 of a level on top
     // Unsigned numbers, four a texel. Three texels for each texture of the scene:
-    //   image:   (0, 1 if sRGB, levels, index of the first level's texel)
+    //   image:   (0, TexelCoding, levels, index of the first level's texel)
     //   checker: (1, 0, 0, 0), then the bits of `even`, then those of `odd`
     // and behind these one for each level: (cols, rows, first texel, 0).
     BufferTexture table;
