@@ -414,6 +414,50 @@ TEST_F(SceneKeys, TexturesFromTexelsAndFiles) {
     EXPECT_EQ(squares.odd, glm::vec4(0.25f, 0.25f, 0.25f, 1.0f));
 }
 
+std::string bytes_of_ints(const std::vector<int>& bytes) {
+    std::string text;
+    for (const int byte : bytes)
+        text += static_cast<char>(byte);
+    return text;
+}
+
+// Images of 4 x 2 texels in formats that say their size and then just go on.
+std::vector<std::pair<std::string, std::string>> plain_images() {
+    const std::string texels(4 * 2 * 4, '\x60');
+    return {
+        {"a.tga", bytes_of_ints({0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4, 0, 2, 0, 32, 0}) + texels},
+        {"a.bmp", bytes_of_ints({'B', 'M', 86, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0, 40, 0, 0, 0,
+                                 4,   0,   0,  0, 2, 0, 0, 0, 1, 0, 32, 0, 0, 0, 0,  0, 0, 0,
+                                 0,   0,   0,  0, 0, 0, 0, 0, 0, 0, 0,  0, 0, 0, 0,  0, 0, 0}) +
+                      texels},
+        {"a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n" + texels}};
+}
+
+// What stb makes of the missing texels is whatever lies in its memory.
+TEST_F(SceneKeys, ImagesThatAreCutShortAreTheChecker) {
+    for (const auto& [name, bytes] : plain_images()) {
+        SCOPED_TRACE(name);
+        const std::string scene = fmt::format(R"({{"raypick": 1,
+            "environment": {{"type": "image", "file": "{0}"}},
+            "textures": {{"t": {{"type": "image", "file": "{0}"}}}}}})",
+                                              name);
+        write(name, bytes);
+        EXPECT_THAT(load("a.json", scene).warnings, testing::IsEmpty());
+        for (const std::size_t missing : {1, 5, 16, 31}) {
+            SCOPED_TRACE(missing);
+            write(name, bytes.substr(0, bytes.size() - missing));
+            const LoadedScene loaded = load("a.json", scene);
+            ASSERT_EQ(loaded.warnings.size(), 2u);
+            for (const std::string& warning : loaded.warnings)
+                EXPECT_THAT(warning, HasSubstr("is cut short"));
+            const auto& image = std::get<ImageTexture>(loaded.scene.textures.at(0).source);
+            EXPECT_EQ(image.pixels->texels.at(0), glm::u8vec4(255, 0, 255, 255));
+            const auto& sky = std::get<ImageSky>(loaded.scene.environment);
+            EXPECT_EQ(sky.pixels->texels.at(0), glm::vec3(1, 0, 1));
+        }
+    }
+}
+
 TEST_F(SceneKeys, TexturesThatAreWrong) {
     const auto of_texture = [this](const std::string& members) {
         return complaint_of(fmt::format(R"("textures": [{{"name": "t", {}}}])", members));
