@@ -458,6 +458,20 @@ TEST_F(SceneKeys, ImagesThatAreCutShortAreTheChecker) {
     }
 }
 
+// Base64 of a triangle's numbers with one that is none.
+TEST_F(SceneKeys, ArraysOfBase64HoldFiniteNumbers) {
+    const auto of_mesh = [this](const std::string& members) {
+        return complaint_of(
+            fmt::format(R"("meshes": [{{"name": "m", "triangles": "", {}}}])", members));
+    };
+    EXPECT_EQ(of_mesh(R"("positions": "AAAAAAAAAAAAAAAAAAAAAAAAgH8AAAAA")"),
+              "/meshes/0/positions (of \"m\"): element 1 holds inf, which is not finite");
+    EXPECT_EQ(of_mesh(R"("positions": [[0, 0, 0]], "normals": "AADAfwAAAAAAAAAA")"),
+              "/meshes/0/normals (of \"m\"): element 0 holds nan, which is not finite");
+    EXPECT_EQ(of_mesh(R"("positions": [[0, 0, 0]], "uvs": "AAAAAAAAgP8=")"),
+              "/meshes/0/uvs (of \"m\"): element 0 holds -inf, which is not finite");
+}
+
 TEST_F(SceneKeys, TexturesThatAreWrong) {
     const auto of_texture = [this](const std::string& members) {
         return complaint_of(fmt::format(R"("textures": [{{"name": "t", {}}}])", members));
@@ -494,7 +508,7 @@ TEST_F(SceneKeys, Environments) {
     // One texel (NaN, 0, 0).
     EXPECT_EQ(complaint_of(R"("environment": {"type": "image", "rows": 1, "cols": 1,
                                "texels": "AADAfwAAAAAAAAAA"})"),
-              "line 2: /environment/texels: texel 0 holds nan: light is a finite number from 0 up");
+              "line 2: /environment/texels: element 0 holds nan, which is not finite");
     const LoadedScene lost =
         load("b.json", R"({"raypick": 1, "environment": {"type": "image", "file": "lost.hdr"}})");
     ASSERT_EQ(lost.warnings.size(), 1u);

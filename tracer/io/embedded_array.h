@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -26,6 +28,15 @@ inline void swap_if_big_endian(std::string& bytes, std::size_t size) {
     }
 }
 
+// Numbers that are written one by one can't be NaN or infinite either.
+inline void check_finite(const JsonValue& value, std::span<const float> numbers, std::size_t size) {
+    const auto broken = std::find_if_not(numbers.begin(), numbers.end(),
+                                         [](float number) { return std::isfinite(number); });
+    if (broken == numbers.end()) return;
+    const auto place = static_cast<std::size_t>(broken - numbers.begin());
+    value.fail(fmt::format("element {} holds {}, which is not finite", place / size, *broken));
+}
+
 // `Element` consists of numbers of type Number and nothing else.
 template <typename Element, typename Number>
 std::vector<Element> decode_array(const JsonValue& value) {
@@ -39,6 +50,11 @@ std::vector<Element> decode_array(const JsonValue& value) {
     swap_if_big_endian(*bytes, sizeof(Number));
     std::vector<Element> elements(bytes->size() / sizeof(Element));
     if (!elements.empty()) std::memcpy(elements.data(), bytes->data(), bytes->size());
+    if constexpr (std::is_same_v<Number, float>) {
+        constexpr std::size_t kSize = sizeof(Element) / sizeof(float);
+        const auto* const first = reinterpret_cast<const float*>(elements.data());
+        check_finite(value, {first, kSize * elements.size()}, kSize);
+    }
     return elements;
 }
 
