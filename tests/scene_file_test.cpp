@@ -378,7 +378,7 @@ TEST_F(SceneFile, StopsWhenAsked) {
 
 TEST_F(SceneFile, SyntaxErrorsHaveLineAndColumn) {
     EXPECT_EQ(complaint("{\n  \"raypick\": 1,\n  \"ambient\": oops\n}"),
-              "line 3, column 14: unexpected 'o'");
+              "line 3, column 14: unexpected 'o'; in /ambient");
     EXPECT_EQ(complaint("{\"raypick\": 1, }"),
               "line 1, column 16: unexpected '}'; expected text in quotes");
     EXPECT_EQ(complaint("{\"raypick\": 1,\n"),
@@ -387,14 +387,16 @@ TEST_F(SceneFile, SyntaxErrorsHaveLineAndColumn) {
               "line 1, column 16: unexpected 'x'; expected end of the file");
     EXPECT_EQ(complaint("{\"ä\": 1,, \"raypick\": 1}"),
               "line 1, column 9: unexpected ','; expected text in quotes");
-    EXPECT_EQ(complaint("{\"raypick\": NaN}"), "line 1, column 13: unexpected 'N'");
+    EXPECT_EQ(complaint("{\"raypick\": NaN}"), "line 1, column 13: unexpected 'N'; in /raypick");
     EXPECT_EQ(complaint("{\"raypick\": ,}"),
               "line 1, column 13: unexpected ','; expected '[', '{', a text, a number, true, false "
-              "or null");
+              "or null; in /raypick");
     EXPECT_EQ(complaint("{\"raypick\": 1.}"),
-              "line 1, column 15: invalid number; expected digit after '.'");
+              "line 1, column 15: invalid number; expected digit after '.'; in /raypick");
     EXPECT_EQ(complaint("{\"raypick\": 1,\n \"ambient\": 1e999}"),
-              "line 2, column 17: number overflow parsing '1e999'");
+              "line 2, column 17: number overflow parsing '1e999'; in /ambient");
+    EXPECT_EQ(complaint("{\"objects\": [{\"name\": \"a\"}, {\"min\": [0, NaN, 1]}]}"),
+              "line 1, column 41: unexpected 'N'; in /objects/1/min/1");
     EXPECT_EQ(complaint("{\"raypick\": 1, \"\xff\": 1}"),
               "line 1, column 17: invalid string: ill-formed UTF-8 byte; expected text in quotes");
     EXPECT_EQ(complaint("{\"raypick\": 1, \"a\nb\": 1}"),

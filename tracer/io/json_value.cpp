@@ -116,6 +116,7 @@ public:
     bool key(string_t& key) override {
         Level& level = levels_.back();
         level.key = key;
+        level.at_value = true;
         if (level.keys.insert(key).second) return true;
         const std::string place = path();
         complaint_ = fmt::format("line {}: {}: the key \"{}\" stands there twice",
@@ -128,6 +129,8 @@ public:
                      const nlohmann::detail::exception& error) override {
         byte_ = position > 0 ? position - 1 : 0;
         complaint_ = bare_complaint(error.what(), text_, *byte_);
+        const std::string place = path_inside();
+        if (!place.empty()) complaint_ += "; in " + shortened(place, kMaxShown);
         return false;
     }
 
@@ -136,11 +139,15 @@ private:
         bool is_array = false;
         std::size_t index = 0;  // elements that have ended
         std::string key;
+        bool at_value = false;  // of that key
         std::unordered_set<std::string> keys;
     };
 
     bool value() {
-        if (!levels_.empty()) ++levels_.back().index;
+        if (!levels_.empty()) {
+            ++levels_.back().index;
+            levels_.back().at_value = false;
+        }
         return true;
     }
 
@@ -151,7 +158,7 @@ private:
                             shortened(path(), kMaxShown), kMaxDepth);
             return false;
         }
-        levels_.push_back({is_array, 0, {}, {}});
+        levels_.push_back({is_array, 0, {}, false, {}});
         return true;
     }
 
@@ -164,11 +171,20 @@ private:
     [[nodiscard]] std::string path() const {
         std::string path;
         for (std::size_t i = 0; i + 1 < levels_.size(); ++i) {
-            const Level& level = levels_[i];
-            path += '/';
-            path += level.is_array ? std::to_string(level.index) : escaped(level.key);
+            path += '/' + step(levels_[i]);
         }
         return path;
+    }
+
+    // Of the member or element that is being read in it.
+    [[nodiscard]] std::string path_inside() const {
+        if (levels_.empty()) return "";
+        const bool inside = levels_.back().is_array || levels_.back().at_value;
+        return inside ? path() + '/' + step(levels_.back()) : path();
+    }
+
+    static std::string step(const Level& level) {
+        return level.is_array ? std::to_string(level.index) : escaped(level.key);
     }
 
     std::string_view text_;
