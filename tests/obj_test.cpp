@@ -471,6 +471,8 @@ TEST_F(Obj, StopsWhenAskedTo) {
     options.stop = source.get_token();
     EXPECT_THROW(load("a.obj", kTriangle + "f 1 2 3\n", options), Cancelled);
 }
+    EXPECT_EQ(complaint("a.obj", kTriangle + "f 1 2\nf 1\n"),
+              "line 4: a face with fewer than 3 corners, and there is no other face");
 
 TEST_F(Obj, IdsGoOnFromTheSessions) {
     LoadOptions options;

@@ -314,6 +314,10 @@ private:
             scanner_.fail_at(unknown_.first,
                              unknown_word_ + " is no OBJ keyword, and no face follows");
         }
+        if (short_faces_.count > 0) {
+            scanner_.fail_at(short_faces_.first,
+                             "a face with fewer than 3 corners, and there is no other face");
+        }
         throw FileError(
             scanner_.file(),
             fmt::format("has {} vertices but no faces: nothing to show", obj_.positions.size()));
