@@ -383,6 +383,23 @@ TEST_F(Nff, DamagedFilesAreRefusedOrLoad) {
                     "p 3\n0 0 0\n1 0 0\n0 1 0\npp 3\n0 0 0 0 0 1\n1 0 0 0 0 1\n"
                     "0 1 0 0 0 1\n");
 }
+// A set keeps floats, as which both ends are the same; a cone of its own keeps doubles.
+TEST_F(Nff, AConeFlatterThanFloatsTellIsReadAloneAndAmongOthers) {
+    const std::string flat = "c\n1000 0 0 1\n1000.00001 0 0 2\n";
+    const Scene alone = scene_of(flat);
+    const Scene among = scene_of("f 1 0 0 1 0 1 0 1\nc\n0 0 0 1\n0 1 0 1\nf 0 1 0 1 0 1 0 1\n" +
+                                 flat + "c\n0 2 0 1\n0 3 0 1\n");
+    ASSERT_EQ(among.objects.size(), 2u);
+    const Cone& a = std::get<Cone>(alone.objects.at(0).shape);
+    const Cone& b = std::get<Cone>(among.objects.at(0).shape);
+    EXPECT_EQ(b.base, a.base);
+    EXPECT_EQ(b.apex, glm::dvec3(1000.00001, 0, 0));
+    EXPECT_EQ(b.apex_radius, 2.0);
+    EXPECT_EQ(among.materials.at(among.objects[0].material).diffuse, glm::vec3(0, 1, 0));
+    EXPECT_EQ(among.cone_sets.at(0).ends.size(), 4u);
+    EXPECT_EQ(among.cone_sets.at(0).parts.size(), 2u);
+}
+
 
 TEST_F(Nff, IsKnownByItsContent) {
     EXPECT_EQ(load("noending", "# SPD\nb 0 0 1\ns 0 0 0 1\n").scene.objects.size(), 1u);

@@ -61,15 +61,19 @@ public:
     }
 
     void add(const NffCones& group, Sides sides) {
-        if (group.ends.empty()) return;
         if (group.ends.size() == 2) {
-            const glm::dvec4& base = group.ends[0];
-            const glm::dvec4& apex = group.ends[1];
-            place("cone", Cone{glm::dvec3(base), glm::dvec3(apex), base.w, apex.w, false}, sides,
-                  {}, group.parts[0].material);
+            place_cone(group.ends[0], group.ends[1], sides, group.parts[0].material);
             return;
         }
-        ConeSet set = make_cone_set("cones", relative(group.ends), false, group.parts);
+        NffCones flat;
+        NffCones rest;
+        const NffCones& together = separate_flat(group, flat, rest) ? rest : group;
+        for (const Part& part : flat.parts) {
+            for (std::size_t i = part.first; i < part.first + part.count; ++i)
+                place_cone(flat.ends[2 * i], flat.ends[2 * i + 1], sides, part.material);
+        }
+        if (together.ends.empty()) return;
+        ConeSet set = make_cone_set("cones", relative(together.ends), false, together.parts);
         place("cones", ConeSetInstance{add_cone_set(scene_, std::move(set))}, sides,
               translate(origin_), kNoMaterial);
     }
@@ -94,6 +98,35 @@ public:
     }
 
 private:
+    // In double precision.
+    void place_cone(const glm::dvec4& base, const glm::dvec4& apex, Sides sides,
+                    MaterialId material) {
+        place("cone", Cone{glm::dvec3(base), glm::dvec3(apex), base.w, apex.w, false}, sides, {},
+              material);
+    }
+
+    // Divides a group if it has cones whose ends are one point as the floats of a set: each of them
+    // must be an object of its own.
+    bool separate_flat(const NffCones& group, NffCones& flat, NffCones& rest) const {
+        const auto stored = [&](std::size_t end) {
+            return glm::vec3(glm::dvec3(group.ends[end]) - origin_);
+        };
+        const auto is_flat = [&](std::size_t i) { return stored(2 * i) == stored(2 * i + 1); };
+        std::size_t first = 0;
+        while (first < group.size() && !is_flat(first))
+            ++first;
+        if (first == group.size()) return false;
+        for (const Part& part : group.parts) {
+            for (std::size_t i = part.first; i < part.first + part.count; ++i) {
+                NffCones& side = is_flat(i) ? flat : rest;
+                side.ends.push_back(group.ends[2 * i]);
+                side.ends.push_back(group.ends[2 * i + 1]);
+                side.add(1, part.material);
+            }
+        }
+        return true;
+    }
+
     [[nodiscard]] std::vector<glm::vec4> relative(const std::vector<glm::dvec4>& spheres) const {
         std::vector<glm::vec4> result;
         result.reserve(spheres.size());
