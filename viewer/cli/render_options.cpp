@@ -105,6 +105,16 @@ void finish_sampling(const CLI::App& app, RenderSettings& settings) {
     }
 }
 
+// OpenGL draws one sample a pixel and no further rays.
+void refuse_for_raster(const CLI::App& app) {
+    for (const char* name :
+         {"--depth", "--glass-shadows", "--cutoff", "--no-cutoff", "--sampling", "--samples",
+          "--contrast", "--filter", "--seed", "--aperture", "--focus-distance"}) {
+        if (app.count(name) == 0) continue;
+        throw CLI::ValidationError(name, "is for traced images: leave out --raster");
+    }
+}
+
 }  // namespace
 
 void add_render_options(CLI::App& app, RenderCommand& command) {
@@ -136,6 +146,7 @@ void finish_render(const CLI::App& app, RenderCommand& command) {
     if (command.output == "-" && command.json_stats) {
         throw CLI::ValidationError("--stats=json and --output=- both want standard output");
     }
+    if (command.raster) refuse_for_raster(app);
     finish_sampling(app, command.settings);
 }
 
