@@ -75,7 +75,7 @@ TEST_F(BadInput, MaterialsOfObjFilesNameTheirLibraryAndLine) {
 
 // As far as check_scene lets them go, and in places where a formula divides or takes a root.
 TEST(AwkwardInput, GivesNumbersInEveryPixel) {
-    for (const float shininess : {0.0f, 1e-30f, 1e30f}) {
+    for (const float shininess : {0.0f, 1e-30f, 1e18f}) {
         for (const float ior : {1e-6f, 1.0000001f, 1e6f}) {
             for (const auto reflectance :
                  {Reflectance::constant, Reflectance::dielectric, Reflectance::conductor}) {
@@ -88,7 +88,7 @@ TEST(AwkwardInput, GivesNumbersInEveryPixel) {
                     glass.ior = ior;
                     glass.reflectance = reflectance;
                     glass.thin_walled = thin;
-                    glass.absorption = {1e30f, 1e-30f, 0.0f};
+                    glass.absorption = {1e18f, 1e-30f, 0.0f};
                     glass.model = thin ? LocalModel::phong : LocalModel::blinn_phong;
                     Scene scene;
                     const MaterialId id = add_material(scene, glass);
@@ -119,6 +119,22 @@ TEST(AwkwardInput, GivesNumbersInEveryPixel) {
             }
         }
     }
+}
+
+// A room that makes light, as far as it may and as often as rays may bounce.
+TEST(AwkwardInput, TheStrongestMirrorsGiveNumbersInEveryPixel) {
+    Scene scene;
+    Material mirror;
+    mirror.reflect = {2.0f, 0.5f, 0.0f};
+    mirror.diffuse = mirror.ambient = {0.5f, 0.0f, 0.3f};
+    place(scene, Sphere{{0, 0, 0}, 1.0}, add_material(scene, mirror));
+    scene.lights = {PointLight{"lamp", {0.2, 0.1, 0}, glm::vec3(1e9f), {0, 0, 1}}};
+    Camera camera;
+    camera.eye = {0, 0, 0.5};
+    camera.at = {0.3, 0.2, -1};
+    RenderSettings settings;
+    settings.depth = 64;
+    EXPECT_EQ(picture(scene, camera, {8, 11}, settings).nan_pixels, 0u);
 }
 
 // Triangles without area, normals of no length, texture coordinates all the same.

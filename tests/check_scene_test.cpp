@@ -180,6 +180,47 @@ TEST(CheckScene, SurroundingsAreCheckedToo) {
     EXPECT_THAT(complaint(scene), HasSubstr("texture \"squares\": odd must be between 0 and 1"));
 }
 
+// Sums of light stay finite, also after 63 mirrors.
+TEST(CheckScene, NumbersThatSumsOfLightCouldNotHoldAreRefused) {
+    const auto with = [](const auto& set) {
+        Material m;
+        set(m);
+        return complaint(m);
+    };
+    EXPECT_THAT(with([](Material& m) { m.reflect.x = 2.5f; }),
+                HasSubstr("material \"pane\": reflect must be 2 or less, not 2.5"));
+    EXPECT_THAT(with([](Material& m) { m.transmit.y = 1e18f; }), HasSubstr("transmit must be 2"));
+    EXPECT_THAT(with([](Material& m) { m.diffuse.z = 2e6f; }), HasSubstr("diffuse must be 1"));
+    EXPECT_THAT(with([](Material& m) { m.emissive.z = 1e19f; }), HasSubstr("emissive must be 1e"));
+    EXPECT_EQ(with([](Material& m) {
+                  m.reflect = m.transmit = glm::vec3(2.0f);
+                  m.diffuse = m.ambient = m.specular = glm::vec3(1e6f);
+                  m.emissive = m.absorption = glm::vec3(1e18f);
+                  m.alpha_cutoff = 1.5f;
+              }),
+              "");
+    PointLight lamp;
+    lamp.colour = glm::vec3(1e9f);
+    EXPECT_EQ(complaint(lamp), "");
+    lamp.attenuation = {1e-300, 0.0, 0.0};
+    EXPECT_THAT(complaint(lamp),
+                HasSubstr("constant attenuation must be 0 or at least 1e-18, not 1e-300"));
+}
+
+TEST(CheckScene, WhatAMapMakesOfAColourCountsToo) {
+    Scene scene;
+    Material m;
+    m.name = "pane";
+    m.reflect = glm::vec3(1.0f);
+    m.map(MapSlot::reflect).texture = add_texture(scene, {"squares", Checker{}});
+    m.map(MapSlot::reflect).gain = 1.5f;
+    add_material(scene, m);
+    EXPECT_EQ(complaint(scene), "");
+    scene.materials[0].map(MapSlot::reflect).gain = 3.0f;
+    EXPECT_EQ(complaint(scene),
+              "material \"pane\": reflect times its map must be 2 or less, not 3");
+}
+
 TEST(CheckScene, BadMaterialsAreNamedWithTheirKey) {
     Material material;
     material.diffuse.y = kNan;

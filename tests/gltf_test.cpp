@@ -4,6 +4,7 @@
 #include "model_files.h"
 
 #include "tracer/error.h"
+#include "tracer/io/save_scene.h"
 
 #include <gmock/gmock.h>
 #include <glm/geometric.hpp>
@@ -556,6 +557,33 @@ TEST_F(GltfMaterials, ATextureOfMetalAndRoughnessIsTheFactorsOfEachTexel) {
     }
 }
 
+// What is read can be saved and loaded again.
+TEST_F(GltfMaterials, ColoursThatVanishInGlassStayWithinWhatScenesHold) {
+    Json json = pbr({{"metallicFactor", 0}});
+    json["extensions"] = {
+        {"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+        {"KHR_materials_volume",
+         {{"thicknessFactor", 1}, {"attenuationDistance", 2}, {"attenuationColor", {0.5, 0, 1}}}}};
+    json["emissiveFactor"] = {1, 1, 1};
+    json["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 1e18;
+    Model model = placed_square();
+    model.json["materials"] = {json};
+    model.json["meshes"][0]["primitives"][0]["material"] = 0;
+    const LoadedScene loaded = load_model(model);
+    const glm::vec3 absorption = loaded.scene.materials.at(0).absorption;
+    EXPECT_NEAR(absorption.x, std::log(2.0f) / 2.0f, 1e-6f);
+    EXPECT_EQ(absorption.y, 1e18f);
+    save_scene(loaded.scene, folder_ / "saved.json");
+    EXPECT_EQ(load_scene(folder_ / "saved.json").scene.materials.at(0).absorption, absorption);
+}
+
+TEST_F(GltfMaterials, ACutoffAboveOneLeavesNothing) {
+    Json json = pbr({{"baseColorFactor", {1, 1, 1, 1}}});
+    json["alphaMode"] = "MASK";
+    json["alphaCutoff"] = 1.5;
+    EXPECT_EQ(material(json).alpha_cutoff, 1.5f);
+}
+
 // --- Cameras and lights -------------------------------------------------------------------------
 
 TEST_F(Gltf, CamerasLookAlongMinusZOfTheirNode) {
@@ -617,6 +645,20 @@ TEST_F(Gltf, LightsAreScaledSoThatTheBrightestGivesOneInTheMiddle) {
 
 // --- Complaints ---------------------------------------------------------------------------------
 
+TEST_F(Gltf, ALightFromVeryFarIsBrightHereAndCanBeSaved) {
+    Model model = placed_square();
+    model.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+    Json lamp = {{"translation", {0, 0, 1e11}}};
+    lamp["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    model.node(lamp);
+    const LoadedScene loaded = load_model(model);
+    const auto& light = std::get<PointLight>(loaded.scene.lights.at(0));
+    EXPECT_NEAR(static_cast<double>(light.colour.x) / (light.attenuation.quadratic * 1e22), 1.0,
+                1e-3);
+    save_scene(loaded.scene, folder_ / "saved.json");
+    EXPECT_EQ(load_scene(folder_ / "saved.json").scene.lights.size(), 1u);
+}
+
 TEST_F(Gltf, ComplaintsNameTheJsonPath) {
     const auto changed = [&](const char* pointer, const Json& value) {
         Model model = placed_square();
@@ -677,6 +719,21 @@ TEST_F(Gltf, ComplaintsNameTheElement) {
     other.node({{"mesh", 0}});
     EXPECT_EQ(complaint_about(other),
               "/accessors/1: element 2: there is no vertex 4 (there are 4)");
+}
+
+TEST_F(Gltf, ComplaintsAboutNodesBeyondAllCoordinates) {
+    Model wide = placed_square();
+    wide.json["cameras"] = {{{"orthographic", {{"ymag", 9e17}}}}};
+    wide.node({{"camera", 0}});
+    EXPECT_THAT(complaint_about(wide), HasSubstr("ymag: must be a positive number"));
+    Model far = square();
+    far.node({{"mesh", 0}, {"translation", {1e25, 0, 0}}});
+    EXPECT_EQ(complaint_about(far), "/nodes/0: its place: x is 1e+25: beyond 1e+18");
+    Model large = square();
+    large.node({{"children", {1}}, {"scale", {1e10, 1, 1}}});
+    large.node({{"mesh", 0}, {"scale", {1e10, 1, 1}}});
+    large.json["scenes"] = {{{"nodes", {0}}}};
+    EXPECT_EQ(complaint_about(large), "/nodes/1: its scale: x is 1e+20: beyond 1e+18");
 }
 
 TEST_F(Gltf, ComplaintsAboutTheTree) {

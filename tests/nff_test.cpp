@@ -353,6 +353,13 @@ TEST_F(Nff, SaysWhatIsWrongAndWhere) {
     EXPECT_EQ(complaint_of("s 0 0 0\n"), "line 2: a sphere's radius is missing");
     EXPECT_EQ(complaint_of("c 0 0 0 1\n0 0 0 2\n"),
               "line 2: a cone's base and apex are the same point");
+    EXPECT_EQ(complaint_of("s 0 0 0 1e-44\n"),
+              "line 1: a sphere's radius must be a number other than 0, not 1e-44");
+    EXPECT_EQ(
+        complaint_of("f 1 1 1 1 0 1 0.5 1e-44\n"),
+        "line 1: the index of refraction of what transmits light must be positive, not 1e-44");
+    EXPECT_EQ(complaint_of("f 1e9 1 1 1 0 1 0 1\n"),
+              "line 1: a colour must be no more than 1000000, not 1000000000");
     EXPECT_EQ(complaint_of("c 0 0 0 0\n0 0 1 0\n"), "line 2: both radii of a cone are 0");
     EXPECT_EQ(complaint_of("c 0 0 0 nan\n0 0 1 0\n"), "line 2: a cone's radii must be numbers");
     EXPECT_EQ(complaint_of("c 0 0 0 -1\n0 0 1 2\n"),
@@ -376,13 +383,6 @@ TEST_F(Nff, SaysWhatIsWrongAndWhere) {
     EXPECT_EQ(complaint_of("b 1 1 1\n"), "has no objects: nothing to show");
 }
 
-TEST_F(Nff, DamagedFilesAreRefusedOrLoad) {
-    expect_no_crash("a.nff",
-                    "b 0 0 1\nv\nfrom 1 2 3\nat 0 0 0\nup 0 0 1\nangle 45\n"
-                    "l 1 2 3\nf 1 0.5 0 1 0 1 0 1\ns 0 0 0 1\nc 0 0 0 1 0 0 1 1\n"
-                    "p 3\n0 0 0\n1 0 0\n0 1 0\npp 3\n0 0 0 0 0 1\n1 0 0 0 0 1\n"
-                    "0 1 0 0 0 1\n");
-}
 // A set keeps floats, as which both ends are the same; a cone of its own keeps doubles.
 TEST_F(Nff, AConeFlatterThanFloatsTellIsReadAloneAndAmongOthers) {
     const std::string flat = "c\n1000 0 0 1\n1000.00001 0 0 2\n";
@@ -400,6 +400,13 @@ TEST_F(Nff, AConeFlatterThanFloatsTellIsReadAloneAndAmongOthers) {
     EXPECT_EQ(among.cone_sets.at(0).parts.size(), 2u);
 }
 
+TEST_F(Nff, DamagedFilesAreRefusedOrLoad) {
+    expect_no_crash("a.nff",
+                    "b 0 0 1\nv\nfrom 1 2 3\nat 0 0 0\nup 0 0 1\nangle 45\n"
+                    "l 1 2 3\nf 1 0.5 0 1 0 1 0 1\ns 0 0 0 1\nc 0 0 0 1 0 0 1 1\n"
+                    "p 3\n0 0 0\n1 0 0\n0 1 0\npp 3\n0 0 0 0 0 1\n1 0 0 0 0 1\n"
+                    "0 1 0 0 0 1\n");
+}
 
 TEST_F(Nff, IsKnownByItsContent) {
     EXPECT_EQ(load("noending", "# SPD\nb 0 0 1\ns 0 0 0 1\n").scene.objects.size(), 1u);

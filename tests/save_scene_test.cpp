@@ -289,8 +289,8 @@ TEST_F(SaveScene, SignsOfZeroAndExtremeNumbersSurvive) {
     scene.objects[0].world_from_object.translation = {-0.0, 9007199254740993.0,
                                                       123456789012345680.0};
     scene.materials.push_back(Material{});
-    scene.materials[0].diffuse = {std::numeric_limits<float>::min(), std::nextafter(0.1f, 1.0f),
-                                  16777216.0f};
+    scene.materials[0].emissive = {std::numeric_limits<float>::min(), std::nextafter(0.1f, 1.0f),
+                                   16777216.0f};
     save_scene(scene, folder_ / "a.json");
     const Scene loaded = load_scene(folder_ / "a.json").scene;
     const auto& before = std::get<Sphere>(scene.objects[0].shape);
@@ -299,7 +299,28 @@ TEST_F(SaveScene, SignsOfZeroAndExtremeNumbersSurvive) {
     EXPECT_EQ(std::memcmp(&loaded.objects[0].world_from_object, &scene.objects[0].world_from_object,
                           sizeof(Transform)),
               0);
-    EXPECT_EQ(loaded.materials[0].diffuse, scene.materials[0].diffuse);
+    EXPECT_EQ(loaded.materials[0].emissive, scene.materials[0].emissive);
+}
+
+// The ends of what check_scene allows are what the reader allows.
+TEST_F(SaveScene, TheLargestNumbersComeBack) {
+    Scene scene;
+    Material m;
+    m.diffuse = m.ambient = m.specular = glm::vec3(1e6f);
+    m.reflect = m.transmit = glm::vec3(2.0f);
+    m.emissive = m.absorption = glm::vec3(1e18f);
+    m.shininess = m.ior = m.alpha_cutoff = 1e18f;
+    place(scene, Sphere{{0, 0, 0}, 1.0}, add_material(scene, m), scale(glm::dvec3(1e18)));
+    PointLight lamp;
+    lamp.colour = glm::vec3(1e18f);
+    lamp.attenuation = {1e-18, 0.0, 1e18};
+    scene.lights.emplace_back(lamp);
+    add_texture(scene, {"squares", Checker{glm::vec4(1.0f), glm::vec4(0.0f)}});
+    save_scene(scene, folder_ / "a.json");
+    const Scene loaded = load_scene(folder_ / "a.json").scene;
+    EXPECT_EQ(loaded.materials.at(0).absorption, m.absorption);
+    EXPECT_EQ(loaded.materials.at(0).alpha_cutoff, m.alpha_cutoff);
+    EXPECT_EQ(std::get<PointLight>(loaded.lights.at(0)).attenuation, lamp.attenuation);
 }
 
 TEST_F(SaveScene, EveryFloatIsReadBack) {

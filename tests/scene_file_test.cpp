@@ -487,7 +487,7 @@ TEST_F(SceneFile, WrongTypes) {
               "/materials/gold/diffuse: must be a colour: [red, green, blue] or one number, not an "
               "array of 2");
     EXPECT_EQ(complaint_of_material(R"("diffuse": [1, null, 2])"),
-              "/materials/gold/diffuse/1: must be a number that is 0 or more, not null");
+              "/materials/gold/diffuse/1: must be a number from 0 to 1e6, not null");
     EXPECT_EQ(complaint_of_objects(R"({"type": "sphere", "radius": 1, "centre": 1})"),
               "/objects/0/centre: must be three numbers [x, y, z], not 1");
     EXPECT_EQ(complaint_of_objects(R"({"type": "sphere", "radius": 1, "name": 5})"),
@@ -513,9 +513,9 @@ TEST_F(SceneFile, NumbersThatMakeNoSense) {
     EXPECT_EQ(complaint_of_material(R"("ior": -1.5)"),
               "/materials/gold/ior: must be a positive number, not -1.5");
     EXPECT_EQ(complaint_of_material(R"("reflect": [0, -0.5, 0])"),
-              "/materials/gold/reflect/1: must be a number that is 0 or more, not -0.5");
+              "/materials/gold/reflect/1: must be a number from 0 to 2, not -0.5");
     EXPECT_EQ(complaint_of_material(R"("shininess": -1)"),
-              "/materials/gold/shininess: must be a number that is 0 or more, not -1");
+              "/materials/gold/shininess: must be a number from 0 to 1e18, not -1");
     EXPECT_EQ(complaint_of_objects(R"({"type": "sphere", "radius": 0})"),
               "/objects/0/radius: must be a positive number, not 0");
     EXPECT_EQ(complaint_of_objects(R"({"type": "sphere", "radius": 1, "centre": [0, 0, 1e200]})"),
@@ -528,7 +528,7 @@ TEST_F(SceneFile, NumbersThatMakeNoSense) {
               "/lights/0/direction: must not be [0, 0, 0]: it gives a direction");
     EXPECT_EQ(
         complaint_of_root(R"("lights": [{"type": "point", "position": [0, 0, 0], "colour": -1}])"),
-        "/lights/0/colour: must be a number that is 0 or more, not -1");
+        "/lights/0/colour: must be a number from 0 to 1e18, not -1");
 }
 
 TEST_F(SceneFile, CamerasThatMakeNoView) {

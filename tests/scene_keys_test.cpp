@@ -91,7 +91,7 @@ TEST_F(SceneKeys, ShapesThatAreWrong) {
         "/objects/0/base_radius: must not be 0, since apex_radius is");
     EXPECT_EQ(
         of_object(R"({"type": "cone", "base": [0, 0, 0], "apex": [0, 1, 0],"base_radius":-1})"),
-        "/objects/0/base_radius: must be a number that is 0 or more, not -1");
+        "/objects/0/base_radius: must be a number from 0 to 1e18, not -1");
     EXPECT_EQ(
         of_object(R"({"type": "cylinder", "base": [0, 0, 0], "apex": [0, 1, 0], "radius": 0})"),
         "/objects/0/radius: must be a positive number, not 0");
@@ -304,7 +304,7 @@ TEST_F(SceneKeys, LightsThatAreWrong) {
     EXPECT_EQ(of_light(R"({"type": "point", "position": [0, 0, 0], "attenuation": [0, 0, 0]})"),
               "/lights/0/attenuation: must not be [0, 0, 0]: the light would be infinitely bright");
     EXPECT_EQ(of_light(R"({"type": "point", "position": [0, 0, 0], "attenuation": [1, -1, 0]})"),
-              "/lights/0/attenuation/1: must be a number that is 0 or more, not -1");
+              "/lights/0/attenuation/1: must be 0 or a number from 1e-18 to 1e18, not -1");
     EXPECT_EQ(of_light(R"({"type": "spot", "name": "s", "position": [0, 0, 0],
                            "direction": [0, 1, 0], "inner_degrees": 40, "outer_degrees": 30})"),
               "line 2: /lights/0/inner_degrees (of \"s\"): must not be more than outer_degrees, "
@@ -366,7 +366,10 @@ TEST_F(SceneKeys, MaterialsThatAreWrong) {
     EXPECT_EQ(of_material(R"("opacity": 1.5)"),
               "/materials/m/opacity: must be a number from 0 to 1, not 1.5");
     EXPECT_EQ(of_material(R"("absorption": -1)"),
-              "/materials/m/absorption: must be a number that is 0 or more, not -1");
+              "/materials/m/absorption: must be a number from 0 to 1e18, not -1");
+    EXPECT_EQ(of_material(R"("reflect": [1e18, 0.5, 0])"),
+              "/materials/m/reflect/0: must be a number from 0 to 2, not 1e+18");
+    EXPECT_EQ(of_material(R"("alpha_cutoff": 1.5)"), "");
     EXPECT_EQ(of_material(R"("priority": 0.5)"),
               "/materials/m/priority: must be a whole number between -1e9 and 1e9, not 0.5");
     EXPECT_EQ(of_material(R"("thin_walled": "yes")"),
@@ -486,6 +489,8 @@ TEST_F(SceneKeys, TexturesThatAreWrong) {
               "/textures/0/rows (of \"t\"): must be a whole number from 1 to 65536, not 0");
     EXPECT_EQ(of_texture(R"("type": "checker", "even": [1, 0, 0, 2])"),
               "/textures/0/even/3 (of \"t\"): must be a number from 0 to 1, not 2");
+    EXPECT_EQ(of_texture(R"("type": "checker", "odd": 3)"),
+              "/textures/0/odd (of \"t\"): must be a number from 0 to 1, not 3");
 }
 
 TEST_F(SceneKeys, Environments) {

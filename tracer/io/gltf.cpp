@@ -7,6 +7,7 @@
 #include "tracer/io/gltf_mesh.h"
 #include "tracer/io/gltf_textures.h"
 #include "tracer/io/load_steps.h"
+#include "tracer/io/mesh_build.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -173,6 +174,7 @@ private:
             node.fail(fmt::format("lies more than {} nodes deep", kMaxDepth));
         }
         const Transform world = visit.world_from_parent * node_transform(node);
+        check_place(node, world);
         const std::string name = node_name(node, visit.node);
         const std::string path = unique_path(visit.parent_path + '/' + name);
         if (node.find("mesh")) add_object_of(node, world, name, path);
@@ -186,6 +188,16 @@ private:
         // The last first, because the latest visit is made next.
         for (std::size_t i = children.size(); i-- > 0;)
             todo_.push_back({children[i], world, path, visit.depth + 1});
+    }
+
+    // Where a node comes to lie with all those above it.
+    static void check_place(const JsonValue& node, const Transform& world) {
+        for (const glm::dvec3& v : {world.linear[0], world.linear[1], world.linear[2]}) {
+            if (!is_coordinate(v)) node.fail("its scale: " + coordinate_complaint(v));
+        }
+        if (!is_coordinate(world.translation)) {
+            node.fail("its place: " + coordinate_complaint(world.translation));
+        }
     }
 
     // Node name, else mesh name, else "mesh3"; without a mesh "node3".
@@ -262,7 +274,9 @@ private:
 
     static void read_projection(const JsonValue& json, Camera& camera) {
         if (const std::optional<JsonValue> orthographic = json.find("orthographic")) {
-            constexpr NumberRule kSize{0.0, 1e18, false, "a positive number"};
+            // Half of what scenes hold.
+            constexpr NumberRule kSize{kSmallestPositive, 0.5 * kLargestCoordinate, true,
+                                       "a positive number"};
             camera.projection = Projection::orthographic;
             camera.height = 2.0 * orthographic->need("ymag").number(kSize);
             return;

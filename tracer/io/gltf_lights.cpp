@@ -1,5 +1,7 @@
 #include "tracer/io/gltf_lights.h"
 
+#include "tracer/scene/limits.h"
+
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
@@ -62,6 +64,21 @@ double irradiance(const Light& light, const glm::dvec3& point, double least) {
     return std::visit([&](const auto& other) { return greatest(other.colour); }, light);
 }
 
+// Divides the light. What is far away may get brighter than colours may be: then it fades less.
+template <typename Kind>
+void expose(Kind& light, double brightest) {
+    glm::dvec3 colour = glm::dvec3(light.colour) / brightest;
+    const double excess = std::max({colour.x, colour.y, colour.z}) / kMostLight;
+    if (excess > 1.0) {
+        colour /= excess;
+        if constexpr (requires { light.attenuation; }) {
+            light.attenuation.quadratic =
+                std::max(light.attenuation.quadratic / excess, kLeastAttenuation);
+        }
+    }
+    light.colour = glm::vec3(colour);
+}
+
 }  // namespace
 
 std::optional<Light> read_gltf_light(const GltfDocument& document, const JsonValue& reference,
@@ -107,11 +124,8 @@ void expose_gltf_lights(Scene& scene) {
     for (const Light& light : scene.lights)
         brightest = std::max(brightest, irradiance(light, centre, least));
     if (!(brightest > 0.0) || !std::isfinite(brightest)) return;
-    for (Light& light : scene.lights) {
-        std::visit(
-            [&](auto& kind) { kind.colour = glm::vec3(glm::dvec3(kind.colour) / brightest); },
-            light);
-    }
+    for (Light& light : scene.lights)
+        std::visit([&](auto& kind) { expose(kind, brightest); }, light);
 }
 
 }  // namespace raypick

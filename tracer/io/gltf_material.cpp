@@ -1,6 +1,7 @@
 #include "tracer/io/gltf_material.h"
 
 #include "tracer/error.h"
+#include "tracer/scene/limits.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -17,11 +18,8 @@ namespace raypick {
 
 namespace {
 
-constexpr double kLargestColour = 1e18;
-constexpr double kLargestAbsorption = 1e30;
-
 constexpr NumberRule kFraction{0.0, 1.0, true, "a number between 0 and 1"};
-constexpr NumberRule kNotNegative{0.0, kLargestColour, true, "a number, 0 or more"};
+constexpr NumberRule kNotNegative{0.0, kMostLight, true, "a number, 0 or more"};
 constexpr NumberRule kCoordinate{-1e9, 1e9, true, "a number"};
 
 float number(const JsonValue& object, std::string_view key, const NumberRule& rule,
@@ -120,7 +118,9 @@ private:
         material_.emissive =
             colour(json_, "emissiveFactor", kNotNegative).value_or(glm::vec3(0.0f));
         if (const auto strength = extension(json_, "KHR_materials_emissive_strength")) {
-            material_.emissive *= number(*strength, "emissiveStrength", kNotNegative, 1.0);
+            material_.emissive = glm::min(
+                material_.emissive * number(*strength, "emissiveStrength", kNotNegative, 1.0),
+                glm::vec3(static_cast<float>(kMostLight)));
         }
         material_.emissive_map = map(json_, "emissiveTexture");
     }
@@ -132,9 +132,7 @@ private:
             material_.transmission_map = map(*transmission, "transmissionTexture");
         }
         if (const auto ior = extension(json_, "KHR_materials_ior")) {
-            const float value = number(*ior, "ior", kNotNegative, 1.5);
-            // 0 is the specification's way to ask for a surface that reflects all light.
-            if (value > 0.0f) material_.ior = static_cast<double>(value);
+            read_ior(*ior);
         }
         if (const auto volume = extension(json_, "KHR_materials_volume")) {
             material_.thickness =
@@ -144,7 +142,15 @@ private:
         }
     }
 
-    // Without a distance nothing is absorbed.
+    // 0 is the specification's way to ask for a surface that reflects all light.
+    void read_ior(const JsonValue& extension) {
+        constexpr NumberRule kIndex{kSmallestPositive, kMostLight, true, "0 or a positive number"};
+        const std::optional<JsonValue> ior = extension.find("ior");
+        if (ior && !ior->equals(0)) material_.ior = ior->number(kIndex);
+    }
+
+    // Without a distance nothing is absorbed. Of a channel that is 0 nothing would be left at any
+    // distance.
     void read_absorption(const JsonValue& volume) {
         const std::optional<JsonValue> distance = volume.find("attenuationDistance");
         if (!distance) return;
@@ -155,7 +161,7 @@ private:
         for (int i = 0; i < 3; ++i) {
             const double per_length = -std::log(static_cast<double>(left[i])) / length;
             material_.absorption[i] =
-                static_cast<float>(std::clamp(per_length, 0.0, kLargestAbsorption));
+                static_cast<float>(std::clamp(per_length, 0.0, kMostAbsorption));
         }
     }
 

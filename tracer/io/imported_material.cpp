@@ -1,5 +1,7 @@
 #include "tracer/io/imported_material.h"
 
+#include "tracer/scene/limits.h"
+
 #include <glm/common.hpp>
 
 #include <algorithm>
@@ -64,6 +66,7 @@ Material material_from(const MtlMaterial& mtl) {
     const bool glass = refracts || mtl.illum == 4 || mtl.illum == 9;
     const glm::vec3 kd = mapped_or(mtl, MtlMapKind::diffuse, mtl.kd, 0.8f);
     const glm::vec3 ks = mapped_or(mtl, MtlMapKind::specular, mtl.ks, 0.0f);
+    const glm::vec3 most_bounce(static_cast<float>(kMostBounce));
     Material material;
     material.name = mtl.name;
     material.diffuse = kd * static_cast<float>(opacity);
@@ -71,11 +74,12 @@ Material material_from(const MtlMaterial& mtl) {
     material.specular = highlights ? ks : glm::vec3(0.0f);
     material.shininess = shininess_in_range(mtl.ns);
     material.emissive = mapped_or(mtl, MtlMapKind::emissive, mtl.ke, 0.0f);
-    material.reflect = mirror ? ks : glm::vec3(0.0f);
+    material.reflect = mirror ? glm::min(ks, most_bounce) : glm::vec3(0.0f);
     material.transmit = mtl.tf * static_cast<float>(1.0 - opacity);
     if (refracts && opacity == 1.0) {
         material.transmit = mtl.tf * glm::max(glm::vec3(1.0f) - ks, glm::vec3(0.0f));
     }
+    material.transmit = glm::min(material.transmit, most_bounce);
     material.ior = glass && mtl.ni && *mtl.ni > 0.0 ? static_cast<float>(*mtl.ni) : 1.0f;
     if (mtl.illum == 5) material.reflectance = Reflectance::conductor;
     if (mtl.illum == 7) material.reflectance = Reflectance::dielectric;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tracer/geometry/shapes.h"
+#include "tracer/scene/limits.h"
 #include "tracer/scene/scene.h"
 
 #include <glm/common.hpp>
@@ -12,9 +13,6 @@
 #include <string>
 
 namespace raypick {
-
-// Coordinates beyond this would overflow in the tracer's float arithmetic.
-inline constexpr double kLargestCoordinate = 1e18;
 
 // False for NaN, infinities and what is too large.
 bool is_coordinate(const glm::dvec3& point);

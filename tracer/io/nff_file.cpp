@@ -34,11 +34,11 @@ Material fill_material(const std::array<double, 8>& f, std::string name) {
     // is: that is the scene's ambient light.
     material.ambient = colour;
     material.specular = glm::vec3(number(4));
-    material.reflect = glm::vec3(number(4));
+    material.reflect = glm::vec3(std::min(number(4), static_cast<float>(kMostBounce)));
     material.shininess = number(5);
-    material.transmit = glm::vec3(number(6));
+    material.transmit = glm::vec3(std::min(number(6), static_cast<float>(kMostBounce)));
     // Opaque surfaces of the SPD have 0, which means nothing there.
-    material.ior = f[7] > 0.0 ? number(7) : 1.0f;
+    material.ior = f[7] >= kSmallestPositive ? number(7) : 1.0f;
     return material;
 }
 
@@ -168,9 +168,10 @@ void NffReader::read_light() {
 void NffReader::read_fill() {
     std::array<double, 8> f{0, 0, 0, 0, 0, kDefaultShine, kDefaultTransmittance, kDefaultIor};
     for (std::size_t i = 0; i < 3; ++i)
-        f[i] = not_negative("a colour");
-    f[3] = not_negative("Kd");
-    f[4] = not_negative("Ks");
+        f[i] = not_negative("a colour", kMostSurfaceColour);
+    const double brightest = std::max({f[0], f[1], f[2], 1.0});
+    f[3] = not_negative("Kd", kMostSurfaceColour / brightest);
+    f[4] = not_negative("Ks", kMostSurfaceColour);
     constexpr std::array<std::string_view, 3> kNames{"Shine", "T", "the index of refraction"};
     for (std::size_t i = 5; i < 8; ++i) {
         const std::optional<double> value = optional_number();
@@ -179,8 +180,9 @@ void NffReader::read_fill() {
             scanner_.fail(fmt::format("{} must be 0 or more, not {}", kNames[i - 5], *value));
         f[i] = *value;
     }
-    if (f[6] > 0.0 && !(static_cast<float>(f[7]) > 0.0f)) {
-        scanner_.fail("the index of refraction of what transmits light must be positive, not 0");
+    if (f[6] > 0.0 && !(f[7] >= kSmallestPositive)) {
+        scanner_.fail(fmt::format(
+            "the index of refraction of what transmits light must be positive, not {}", f[7]));
     }
     if (!scanner_.at_line_end() && !optional_number()) skip_rest_of_line("f");
     material_ = material_of(f);
@@ -204,7 +206,8 @@ Sides NffReader::outer_sides() const {
 void NffReader::read_sphere() {
     const glm::dvec3 centre = point("a sphere's centre");
     const double radius = number("a sphere's radius");
-    if (static_cast<float>(radius) == 0.0f || !(std::abs(radius) <= kLargestCoordinate))
+    // What is denormal as a float has no size either.
+    if (!(std::abs(radius) >= kSmallestPositive && std::abs(radius) <= kLargestCoordinate))
         scanner_.fail(
             fmt::format("a sphere's radius must be a number other than 0, not {}", radius));
     if (!scanner_.at_line_end()) skip_rest_of_line("s");
@@ -222,7 +225,7 @@ void NffReader::read_cone() {
     const double largest = std::max(std::abs(base_radius), std::abs(apex_radius));
     if (!(largest <= kLargestCoordinate) || std::isnan(base_radius))
         scanner_.fail("a cone's radii must be numbers");
-    if (static_cast<float>(largest) == 0.0f) scanner_.fail("both radii of a cone are 0");
+    if (!(largest >= kSmallestPositive)) scanner_.fail("both radii of a cone are 0");
     if (base_radius * apex_radius < 0.0) {
         scanner_.fail(
             fmt::format("a cone's radii {} and {} have different signs", base_radius, apex_radius));
@@ -302,10 +305,12 @@ std::optional<double> NffReader::optional_number() {
     return value;
 }
 
-double NffReader::not_negative(std::string_view what) {
+double NffReader::not_negative(std::string_view what, double most) {
     const double value = number(what);
-    if (!(value >= 0.0 && value <= kLargestCoordinate))
-        scanner_.fail(fmt::format("{} must be 0 or more, not {}", what, value));
+    if (!(value >= 0.0)) scanner_.fail(fmt::format("{} must be 0 or more, not {}", what, value));
+    if (!(value <= most)) {
+        scanner_.fail(fmt::format("{} must be no more than {}, not {}", what, most, value));
+    }
     return value;
 }
 

@@ -5,6 +5,7 @@
 #include "tracer/io/load.h"
 #include "tracer/io/polygon.h"
 #include "tracer/io/text_scanner.h"
+#include "tracer/scene/limits.h"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -95,7 +96,7 @@ private:
     double number(std::string_view what);
     // The next number, if that is what comes next.
     std::optional<double> optional_number();
-    double not_negative(std::string_view what);
+    double not_negative(std::string_view what, double most = kMostLight);
     glm::dvec3 point(std::string_view what);
     glm::vec3 colour(std::string_view what);
     std::size_t corner_count(std::size_t numbers_a_corner);

@@ -95,10 +95,12 @@ ImageTexture read_image_texture(const JsonValue& value, const ImageFolder& image
 
 // [r, g, b], [r, g, b, alpha] or one number.
 glm::vec4 read_rgba(const JsonValue& value) {
-    if (!value.is_array() || value.elements().size() != 4) return {read_colour(value), 1.0f};
+    if (!value.is_array() || value.elements().size() != 4) {
+        return {read_colour(value, kFraction), 1.0f};
+    }
     const std::vector<JsonValue> rgba = value.elements();
-    return {read_float(rgba[0], kNotNegative), read_float(rgba[1], kNotNegative),
-            read_float(rgba[2], kNotNegative), read_float(rgba[3], kFraction)};
+    return {read_float(rgba[0], kFraction), read_float(rgba[1], kFraction),
+            read_float(rgba[2], kFraction), read_float(rgba[3], kFraction)};
 }
 
 Checker read_checker(const JsonValue& value) {
@@ -184,17 +186,18 @@ void read_maps(const JsonValue& value, Material& material, const References& tex
 }
 
 void read_colours(const JsonValue& value, Material& material) {
-    const auto read_if_present = [&value](std::string_view key, glm::vec3& target) {
-        if_present(value, key, [&target](const JsonValue& c) { target = read_colour(c); });
+    const auto read_if_present = [&value](std::string_view key, const NumberRule& rule,
+                                          glm::vec3& target) {
+        if_present(value, key, [&](const JsonValue& c) { target = read_colour(c, rule); });
     };
-    read_if_present("diffuse", material.diffuse);
+    read_if_present("diffuse", kSurfaceColour, material.diffuse);
     material.ambient = material.diffuse;
-    read_if_present("ambient", material.ambient);
-    read_if_present("specular", material.specular);
-    read_if_present("emissive", material.emissive);
-    read_if_present("reflect", material.reflect);
-    read_if_present("transmit", material.transmit);
-    read_if_present("absorption", material.absorption);
+    read_if_present("ambient", kSurfaceColour, material.ambient);
+    read_if_present("specular", kSurfaceColour, material.specular);
+    read_if_present("emissive", kNotNegative, material.emissive);
+    read_if_present("reflect", kBounce, material.reflect);
+    read_if_present("transmit", kBounce, material.transmit);
+    read_if_present("absorption", kNotNegative, material.absorption);
 }
 
 void read_alpha(const JsonValue& value, Material& material) {

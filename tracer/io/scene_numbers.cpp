@@ -17,12 +17,11 @@ glm::dvec3 read_direction(const JsonValue& value) {
     return v;
 }
 
-glm::vec3 read_colour(const JsonValue& value) {
-    if (value.is_number()) return glm::vec3(read_float(value, kNotNegative));
+glm::vec3 read_colour(const JsonValue& value, const NumberRule& rule) {
+    if (value.is_number()) return glm::vec3(read_float(value, rule));
     const std::vector<JsonValue> rgb =
         value.elements(3, "a colour: [red, green, blue] or one number");
-    return {read_float(rgb[0], kNotNegative), read_float(rgb[1], kNotNegative),
-            read_float(rgb[2], kNotNegative)};
+    return {read_float(rgb[0], rule), read_float(rgb[1], rule), read_float(rgb[2], rule)};
 }
 
 }  // namespace raypick

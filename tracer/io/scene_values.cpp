@@ -31,12 +31,17 @@ void read_common_of_light(const JsonValue& value, LightKind& light) {
     if_present(value, "colour", [&](const JsonValue& c) { light.colour = read_colour(c); });
 }
 
+double read_fall_off(const JsonValue& value) {
+    constexpr NumberRule kFallOff{kLeastAttenuation, kLargestCoordinate, true,
+                                  "0 or a number from 1e-18 to 1e18"};
+    return value.equals(0) ? 0.0 : value.number(kFallOff);
+}
+
 void read_attenuation(const JsonValue& light, Attenuation& attenuation) {
     if_present(light, "attenuation", [&](const JsonValue& value) {
         const std::vector<JsonValue> abc =
             value.elements(3, "three numbers [constant, linear, quadratic]");
-        attenuation = {abc[0].number(kNotNegative), abc[1].number(kNotNegative),
-                       abc[2].number(kNotNegative)};
+        attenuation = {read_fall_off(abc[0]), read_fall_off(abc[1]), read_fall_off(abc[2])};
         if (attenuation == Attenuation{0.0, 0.0, 0.0}) {
             value.fail("must not be [0, 0, 0]: the light would be infinitely bright");
         }

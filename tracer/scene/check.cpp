@@ -1,10 +1,12 @@
 #include "tracer/error.h"
+#include "tracer/scene/limits.h"
 #include "tracer/scene/scene.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <string>
@@ -32,6 +34,14 @@ void check_finite(const std::string& what, std::string_view key, const glm::dvec
     check_finite(what, key, v.x);
     check_finite(what, key, v.y);
     check_finite(what, key, v.z);
+}
+
+void check_coordinate(const std::string& what, std::string_view key, const glm::dvec3& v) {
+    check_finite(what, key, v);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (std::abs(v[axis]) <= kLargestCoordinate) continue;
+        complain(what, key, fmt::format("between -{0} and {0}", kLargestCoordinate), v[axis]);
+    }
 }
 
 void check_direction(const std::string& what, std::string_view key, const glm::dvec3& v) {
@@ -164,9 +174,9 @@ void check_object(const Scene& scene, const Object& object) {
     const std::string what = describe("object", object.name);
     std::visit([&](const auto& shape) { check_shape(scene, what, shape); }, object.shape);
     const Transform& transform = object.world_from_object;
-    check_finite(what, "transform", transform.translation);
+    check_coordinate(what, "transform", transform.translation);
     for (int column = 0; column < 3; ++column) {
-        check_finite(what, "transform", transform.linear[column]);
+        check_coordinate(what, "transform", transform.linear[column]);
     }
     if (!inverse(transform)) {
         throw Error(what + ": transform is singular: it flattens the object");
@@ -179,10 +189,15 @@ void check_not_negative(const std::string& what, std::string_view key, double va
     if (value < 0.0) complain(what, key, "0 or more", value);
 }
 
-void check_not_negative(const std::string& what, std::string_view key, const glm::vec3& v) {
-    check_not_negative(what, key, v.x);
-    check_not_negative(what, key, v.y);
-    check_not_negative(what, key, v.z);
+void check_up_to(const std::string& what, std::string_view key, double value, double most) {
+    check_not_negative(what, key, value);
+    if (value > most) complain(what, key, fmt::format("{} or less", most), value);
+}
+
+void check_up_to(const std::string& what, std::string_view key, const glm::vec3& v, double most) {
+    check_up_to(what, key, v.x, most);
+    check_up_to(what, key, v.y, most);
+    check_up_to(what, key, v.z, most);
 }
 
 void check_fraction(const std::string& what, std::string_view key, double value) {
@@ -195,34 +210,55 @@ void check_map(const Scene& scene, const std::string& what, const TextureMap& ma
         throw Error(fmt::format("{}: texture {} does not exist: the scene has {}", what,
                                 map.texture, scene.textures.size()));
     }
-    check_finite(what, "texture transform", map.u_row);
-    check_finite(what, "texture transform", map.v_row);
-    check_finite(what, "texture base", map.base);
-    check_finite(what, "texture gain", map.gain);
+    check_coordinate(what, "texture transform", map.u_row);
+    check_coordinate(what, "texture transform", map.v_row);
+    check_coordinate(what, "texture base and gain", {map.base, map.gain, 0.0});
+}
+
+// The most that a map makes of the colour that it multiplies.
+glm::vec3 mapped(const glm::vec3& colour, const TextureMap& map) {
+    if (!map) return colour;
+    return colour * std::max(std::abs(map.base), std::abs(map.base + map.gain));
+}
+
+void check_colours(const std::string& what, const Material& m) {
+    const auto check = [&](std::string_view key, const glm::vec3& colour, MapSlot slot,
+                           double most) {
+        check_up_to(what, key, colour, most);
+        const std::string with_map = fmt::format("{} times its map", key);
+        check_up_to(what, with_map, mapped(colour, m.map(slot)), most);
+    };
+    const MapSlot ambient = m.map(MapSlot::ambient) ? MapSlot::ambient : MapSlot::diffuse;
+    check("ambient", m.ambient, ambient, kMostSurfaceColour);
+    check("diffuse", m.diffuse, MapSlot::diffuse, kMostSurfaceColour);
+    check("specular", m.specular, MapSlot::specular, kMostSurfaceColour);
+    check("emissive", m.emissive, MapSlot::emissive, kMostLight);
+    check("reflect", m.reflect, MapSlot::reflect, kMostBounce);
+    check("transmit", m.transmit, MapSlot::transmit, kMostBounce);
 }
 
 void check_material(const Scene& scene, const Material& material) {
     const std::string what = describe("material", material.name);
-    check_not_negative(what, "ambient", material.ambient);
-    check_not_negative(what, "diffuse", material.diffuse);
-    check_not_negative(what, "specular", material.specular);
-    check_not_negative(what, "shininess", material.shininess);
-    check_not_negative(what, "emissive", material.emissive);
-    check_not_negative(what, "reflect", material.reflect);
-    check_not_negative(what, "transmit", material.transmit);
-    check_not_negative(what, "absorption", material.absorption);
+    for (const TextureMap& map : material.maps)
+        check_map(scene, what, map);
+    check_colours(what, material);
+    check_up_to(what, "shininess", material.shininess, kMostExponent);
+    check_up_to(what, "absorption", material.absorption, kMostAbsorption);
     check_finite(what, "ior", material.ior);
     if (!(material.ior > 0.0f)) complain(what, "ior", "positive", material.ior);
     check_fraction(what, "opacity", material.opacity);
-    check_fraction(what, "alpha_cutoff", material.alpha_cutoff);
-    for (const TextureMap& map : material.maps)
-        check_map(scene, what, map);
+    check_not_negative(what, "alpha_cutoff", material.alpha_cutoff);  // above 1: nothing is there
 }
 
 void check_attenuation(const std::string& what, const Attenuation& attenuation) {
-    check_not_negative(what, "constant attenuation", attenuation.constant);
-    check_not_negative(what, "linear attenuation", attenuation.linear);
-    check_not_negative(what, "quadratic attenuation", attenuation.quadratic);
+    const auto check = [&](std::string_view key, double value) {
+        check_not_negative(what, key, value);
+        if (value == 0.0 || value >= kLeastAttenuation) return;
+        complain(what, key, fmt::format("0 or at least {}", kLeastAttenuation), value);
+    };
+    check("constant attenuation", attenuation.constant);
+    check("linear attenuation", attenuation.linear);
+    check("quadratic attenuation", attenuation.quadratic);
     if (attenuation == Attenuation{0.0, 0.0, 0.0}) {
         throw Error(what + ": attenuation must not be all 0: it divides the light");
     }
@@ -235,21 +271,21 @@ void check_samples(const std::string& what, int samples) {
 void check_light(const PointLight& light) {
     const std::string what = describe("light", light.name);
     check_finite(what, "position", light.position);
-    check_not_negative(what, "colour", light.colour);
+    check_up_to(what, "colour", light.colour, kMostLight);
     check_attenuation(what, light.attenuation);
 }
 
 void check_light(const DirectionalLight& light) {
     const std::string what = describe("light", light.name);
     check_direction(what, "direction", light.direction);
-    check_not_negative(what, "colour", light.colour);
+    check_up_to(what, "colour", light.colour, kMostLight);
 }
 
 void check_light(const SpotLight& light) {
     const std::string what = describe("light", light.name);
     check_finite(what, "position", light.position);
     check_direction(what, "direction", light.direction);
-    check_not_negative(what, "colour", light.colour);
+    check_up_to(what, "colour", light.colour, kMostLight);
     check_attenuation(what, light.attenuation);
     check_not_negative(what, "inner_degrees", light.inner_degrees);
     if (!(light.outer_degrees >= light.inner_degrees && light.outer_degrees <= 90.0)) {
@@ -262,7 +298,7 @@ void check_light(const SphereLight& light) {
     check_finite(what, "centre", light.centre);
     check_finite(what, "radius", light.radius);
     if (!(light.radius > 0.0)) complain(what, "radius", "positive", light.radius);
-    check_not_negative(what, "colour", light.colour);
+    check_up_to(what, "colour", light.colour, kMostLight);
     check_attenuation(what, light.attenuation);
     check_samples(what, light.samples);
 }
@@ -272,7 +308,7 @@ void check_light(const RectangleLight& light) {
     check_finite(what, "corner", light.corner);
     check_direction(what, "edge_u", light.edge_u);
     check_direction(what, "edge_v", light.edge_v);
-    check_not_negative(what, "colour", light.colour);
+    check_up_to(what, "colour", light.colour, kMostLight);
     check_attenuation(what, light.attenuation);
     check_samples(what, light.samples);
 }
@@ -281,9 +317,9 @@ void check_environment(const std::monostate&) {}
 
 void check_environment(const GradientSky& sky) {
     const std::string what = "the environment";
-    check_not_negative(what, "zenith", sky.zenith);
-    check_not_negative(what, "horizon", sky.horizon);
-    check_not_negative(what, "ground", sky.ground);
+    check_up_to(what, "zenith", sky.zenith, kMostLight);
+    check_up_to(what, "horizon", sky.horizon, kMostLight);
+    check_up_to(what, "ground", sky.ground, kMostLight);
     check_direction(what, "up", sky.up);
 }
 
@@ -295,7 +331,7 @@ void check_environment(const ImageSky& sky) {
     if (!(glm::length(across) > 1e-12)) {
         throw Error(what + ": forward must not be parallel to up");
     }
-    check_not_negative(what, "scale", sky.scale);
+    check_up_to(what, "scale", sky.scale, kMostLight);
 }
 
 void check_texture(const Texture& texture) {
@@ -352,8 +388,8 @@ void check_scene(const Scene& scene) {
     for (const NamedCamera& camera : scene.cameras)
         check_named_camera(camera);
     check_finite("the scene", "origin", scene.origin);
-    check_not_negative("the scene", "background", scene.background);
-    check_not_negative("the scene", "ambient", scene.ambient);
+    check_up_to("the scene", "background", scene.background, kMostLight);
+    check_up_to("the scene", "ambient", scene.ambient, kMostLight);
     for (const Texture& texture : scene.textures)
         check_texture(texture);
     std::visit([](const auto& kind) { check_environment(kind); }, scene.environment);

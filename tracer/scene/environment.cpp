@@ -1,6 +1,7 @@
 #include "tracer/scene/environment.h"
 
 #include "tracer/error.h"
+#include "tracer/scene/limits.h"
 #include "tracer/scene/scene.h"
 
 #include <fmt/format.h>
@@ -75,9 +76,9 @@ void check_light(const std::vector<glm::vec3>& texels) {
     for (std::size_t i = 0; i < texels.size(); ++i) {
         for (int k = 0; k < 3; ++k) {
             const float light = texels[i][k];
-            if (light >= 0.0f && std::isfinite(light)) continue;
+            if (light >= 0.0f && static_cast<double>(light) <= kMostLight) continue;
             throw Error(
-                fmt::format("texel {} holds {}: light is a finite number from 0 up", i, light));
+                fmt::format("texel {} holds {}: light is a number from 0 to 1e18", i, light));
         }
     }
 }
