@@ -66,7 +66,8 @@ TEST_F(BadInput, MaterialsOfObjFilesNameTheirLibraryAndLine) {
             ADD_FAILURE() << line << " passed";
         } catch (const FileError& error) {
             EXPECT_EQ(error.file(), library.string());
-            EXPECT_THAT(error.what(), HasSubstr("line 3: " + line.substr(0, 2))) << line;
+            EXPECT_THAT(error.what(), HasSubstr("line 3: material \"red\": " + line.substr(0, 2)))
+                << line;
         }
     }
 }

@@ -360,6 +360,14 @@ TEST_F(Mtl, TrIsOneMinusDAndDWins) {
     EXPECT_EQ(material("Tr 0.9\nd 0.5\n").transmit, glm::vec3(0.5f));
 }
 
+TEST_F(Mtl, MapsMakeNoMoreOfMirrorsThanScenesHold) {
+    const Material m = material("Ks 1 0.5 0.5\nillum 3\nmap_Ks -mm 0 5 a.png\n");
+    EXPECT_NEAR(m.reflect.x * m.map(MapSlot::reflect).gain, 2.0f, 0.01f);
+    EXPECT_EQ(m.specular.x, 1.0f);
+    material("map_Ks -mm 0 1e30 a.png\n");
+    EXPECT_THAT(warnings_.at(0), HasSubstr("material \"m\": -mm must be within 1e+18: ignored"));
+}
+
 TEST_F(Mtl, EachMissingTextureIsAWarning) {
     material("map_Kd a.png\nmap_Bump -bm 0.2 b.png\n");
     ASSERT_EQ(warnings_.size(), 2u);
@@ -412,10 +420,34 @@ TEST_F(Mtl, WhatIsWrongNamesTheLibrary) {
         }
         return std::string();
     };
-    EXPECT_EQ(error("newmtl a\nKd 1 0\n"), "line 2: Kd is missing");
-    EXPECT_EQ(error("newmtl a\n\nNs many\n"), "line 3: Ns: \"many\" is no number");
+    EXPECT_EQ(error("newmtl a\nKd 1 0\n"), "line 2: material \"a\": Kd is missing");
+    EXPECT_EQ(error("newmtl a\n\nNs many\n"), "line 3: material \"a\": Ns: \"many\" is no number");
     EXPECT_EQ(error("Kd 1 0 0\n"), "line 1: \"Kd\" before the first newmtl");
-    EXPECT_EQ(error("newmtl a\nNs inf\n"), "line 2: Ns is not finite");
+    EXPECT_EQ(error("newmtl a\nNs inf\n"), "line 2: material \"a\": Ns is not finite");
+    EXPECT_EQ(error("newmtl a\nNs -5\n"), "line 2: material \"a\": Ns must be 0 or more, not -5");
+    EXPECT_EQ(error("newmtl a\nNi 0\n"), "line 2: material \"a\": Ni must be positive, not 0");
+    EXPECT_EQ(error("newmtl a\nNi -1\n"), "line 2: material \"a\": Ni must be positive, not -1");
+    EXPECT_EQ(error("newmtl a\nd -1\n"), "line 2: material \"a\": d must be from 0 to 1, not -1");
+    EXPECT_EQ(error("newmtl a\nTr -1\n"), "line 2: material \"a\": Tr must be from 0 to 1, not -1");
+    EXPECT_EQ(error("newmtl a\nKd 1e30 0 0\n"),
+              "line 2: material \"a\": Kd must be no more than 1000000, not 1e+30");
+    EXPECT_EQ(error("newmtl a\nd -halo 0.5\n"), "");
+}
+
+TEST_F(Mtl, MoreThanAllIsTakenAsAll) {
+    write("m.mtl", "newmtl a\nd 2\nnewmtl b\nTr 1.5\nnewmtl c\nillum 3\nKs 5 1 1\n");
+    const LoadedScene loaded =
+        load("a.obj", "mtllib m.mtl\n" + kTriangle +
+                          "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n");
+    ASSERT_EQ(loaded.warnings.size(), 2u);
+    EXPECT_THAT(
+        loaded.warnings[0],
+        HasSubstr("m.mtl: line 2: material \"a\": d must be from 0 to 1, not 2: taken as 1"));
+    EXPECT_THAT(loaded.warnings[1], HasSubstr("line 4: material \"b\": Tr must be from 0 to 1"));
+    EXPECT_FALSE(loaded.scene.materials.at(0).transmits());
+    EXPECT_EQ(loaded.scene.materials.at(1).transmit, glm::vec3(1.0f));
+    EXPECT_EQ(loaded.scene.materials.at(2).reflect, glm::vec3(2.0f, 1.0f, 1.0f));
+    EXPECT_EQ(loaded.scene.materials.at(2).specular, glm::vec3(5.0f, 1.0f, 1.0f));
 }
 
 // --- Complaints ---------------------------------------------------------------------------------
@@ -447,6 +479,8 @@ TEST_F(Obj, ComplaintsNameTheLine) {
 
 TEST_F(Obj, FilesWithoutFacesAreRefused) {
     EXPECT_EQ(complaint("a.obj", kTriangle), "has 3 vertices but no faces: nothing to show");
+    EXPECT_EQ(complaint("a.obj", kTriangle + "f 1 2\nf 1\n"),
+              "line 4: a face with fewer than 3 corners, and there is no other face");
     EXPECT_EQ(complaint("a.obj", "hello\nworld\n"),
               "line 1: \"hello\" is no OBJ keyword, and no face follows");
     EXPECT_EQ(complaint("a.obj", std::string_view("\xff\xfev\0 \0", 6)),
@@ -471,8 +505,6 @@ TEST_F(Obj, StopsWhenAskedTo) {
     options.stop = source.get_token();
     EXPECT_THROW(load("a.obj", kTriangle + "f 1 2 3\n", options), Cancelled);
 }
-    EXPECT_EQ(complaint("a.obj", kTriangle + "f 1 2\nf 1\n"),
-              "line 4: a face with fewer than 3 corners, and there is no other face");
 
 TEST_F(Obj, IdsGoOnFromTheSessions) {
     LoadOptions options;

@@ -2,6 +2,7 @@
 
 #include "tracer/io/file_bytes.h"
 #include "tracer/io/text_scanner.h"
+#include "tracer/scene/limits.h"
 
 #include <fmt/format.h>
 
@@ -74,14 +75,16 @@ private:
 
     bool read_value(std::string_view keyword) {
         if (keyword == "Ns") {
-            material_->ns = number(keyword);
+            material_->ns = not_negative(keyword, kMostExponent);
         } else if (keyword == "Ni") {
             material_->ni = number(keyword);
+            if (!(*material_->ni >= kSmallestPositive && *material_->ni <= kMostLight))
+                fail(fmt::format("{} must be positive, not {}", keyword, *material_->ni));
         } else if (keyword == "Tr") {
-            material_->tr = number(keyword);
+            material_->tr = fraction(keyword);
         } else if (keyword == "d") {
-            if (scanner_.peek() == '-') scanner_.word();  // -halo
-            material_->d = number(keyword);
+            skip_halo();
+            material_->d = fraction(keyword);
         } else if (keyword == "illum") {
             const double illum = number(keyword);
             material_->illum = illum >= 0.0 && illum <= 10.0 ? static_cast<int>(illum) : 2;
@@ -100,33 +103,59 @@ private:
             std::find(kPassedOver.begin(), kPassedOver.end(), keyword) != kPassedOver.end();
         if (known || told_unknown_) return;
         told_unknown_ = true;
-        warnings_.push_back(
-            scanner_.place(in_quotes(keyword) + " is no MTL keyword that we know: ignored"));
+        warnings_.push_back(scanner_.place(
+            of_material(in_quotes(keyword) + " is no MTL keyword that we know: ignored")));
     }
 
     void read_map(std::string_view keyword) {
         if (const std::optional<MtlMapKind> kind = mtl_map_kind(keyword)) {
-            auto map = read_mtl_map(scanner_, *kind, warnings_);
+            auto map = read_mtl_map(scanner_, *kind, material_->name, warnings_);
             if (map) material_->set_map(*std::move(map));
         } else if (keyword != "map_Ka" && keyword != "map_ka" &&
                    told_maps_.insert(std::string(keyword)).second) {
-            warnings_.push_back(
-                scanner_.place(fmt::format("{} is not read: left out", in_quotes(keyword))));
+            warnings_.push_back(scanner_.place(
+                of_material(fmt::format("{} is not read: left out", in_quotes(keyword)))));
         }
     }
 
+    // "-halo" may stand before the number of d.
+    void skip_halo() {
+        const std::size_t before = scanner_.offset();
+        if (scanner_.word() != "-halo") scanner_.return_to(before);
+    }
+
+    // As all complaints do it names the material, because the line is that of a library.
+    [[nodiscard]] std::string of_material(std::string_view text) const {
+        return fmt::format("material \"{}\": {}", material_->name, text);
+    }
+    [[noreturn]] void fail(std::string_view complaint) const {
+        scanner_.fail(of_material(complaint));
+    }
+
     double number(std::string_view what) {
-        const double value = scanner_.number(what);
-        if (!std::isfinite(static_cast<float>(value)))
-            scanner_.fail(fmt::format("{} is not finite", what));
+        const double value = scanner_.number(of_material(what));
+        if (!std::isfinite(static_cast<float>(value))) fail(fmt::format("{} is not finite", what));
         return value;
     }
 
-    float light(std::string_view what) {
+    double not_negative(std::string_view what, double most) {
         const double value = number(what);
-        if (!(value >= 0.0))
-            scanner_.fail(fmt::format("{} must be 0 or more, not {}", what, value));
-        return static_cast<float>(value);
+        if (!(value >= 0.0)) fail(fmt::format("{} must be 0 or more, not {}", what, value));
+        if (!(value <= most)) {
+            fail(fmt::format("{} must be no more than {}, not {}", what, most, value));
+        }
+        return value;
+    }
+
+    // More than 1 is taken as 1: what is fully there can't be there more.
+    double fraction(std::string_view what) {
+        const double value = number(what);
+        if (!(value >= 0.0)) fail(fmt::format("{} must be from 0 to 1, not {}", what, value));
+        if (value > 1.0) {
+            warnings_.push_back(scanner_.place(of_material(
+                fmt::format("{} must be from 0 to 1, not {}: taken as 1", what, value))));
+        }
+        return std::min(value, 1.0);
     }
 
     // One number stands for all three. Spectral curves and CIE XYZ are not read.
@@ -134,14 +163,16 @@ private:
         const char first = scanner_.peek();
         if (first == 's' || first == 'x') {
             warnings_.push_back(scanner_.place(
-                fmt::format("{} is only read as red, green, blue: ignored", keyword)));
+                of_material(fmt::format("{} is only read as red, green, blue: ignored", keyword))));
             return std::nullopt;
         }
-        glm::vec3 rgb(light(keyword));
+        const double most = keyword == "Ke" ? kMostLight : kMostSurfaceColour;
+        const auto light = [&] { return static_cast<float>(not_negative(keyword, most)); };
+        glm::vec3 rgb(light());
         const char next = scanner_.peek();
         if (next == '\n' || next == '#') return rgb;
-        rgb.y = light(keyword);
-        rgb.z = light(keyword);
+        rgb.y = light();
+        rgb.z = light();
         return rgb;
     }
 

@@ -1,5 +1,7 @@
 #include "tracer/io/mtl_map.h"
 
+#include "tracer/scene/limits.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,12 +25,14 @@ std::string lower(std::string_view text) {
 // The words of a map line up to the file's name.
 class MapLine {
 public:
-    MapLine(std::string_view text, TextScanner& scanner, std::vector<std::string>& warnings)
-        : left_(text), scanner_(scanner), warnings_(warnings) {}
+    MapLine(std::string_view text, TextScanner& scanner, std::string_view material,
+            std::vector<std::string>& warnings)
+        : left_(text), scanner_(scanner), material_(material), warnings_(warnings) {}
 
     std::optional<MtlMap> read(MtlMapKind kind) {
         map_.kind = kind;
-        map_.place = fmt::format("{}: line {}", scanner_.file(), scanner_.line(scanner_.offset()));
+        map_.place = fmt::format("{}: line {}: material \"{}\"", scanner_.file(),
+                                 scanner_.line(scanner_.offset()), material_);
         map_.folder = std::filesystem::path(scanner_.file()).parent_path();
         while (!left_.empty() && left_[0] == '-' && read_option()) {
         }
@@ -113,7 +117,7 @@ private:
         }
         skip_word();
         if (is_usable(*value)) return *value;
-        warn(option + " is not finite: ignored");
+        warn(fmt::format("{} must be within {}: ignored", option, kLargestCoordinate));
         return otherwise;
     }
 
@@ -150,7 +154,7 @@ private:
         if (!blend_u_ && !blend_v_) map_.use.filter = TextureFilter::nearest;
     }
 
-    static bool is_usable(double value) { return std::isfinite(static_cast<float>(value)); }
+    static bool is_usable(double value) { return std::abs(value) <= kLargestCoordinate; }
 
     [[nodiscard]] std::string_view first_word() const {
         return left_.substr(0, std::min(left_.find_first_of(" \t"), left_.size()));
@@ -165,6 +169,7 @@ private:
 
     std::string_view left_;
     TextScanner& scanner_;
+    std::string_view material_;
     std::vector<std::string>& warnings_;
     MtlMap map_;
     bool blend_u_ = true;
@@ -214,9 +219,9 @@ bool is_mtl_map(std::string_view keyword) {
            name == "refl" || name == "norm";
 }
 
-std::optional<MtlMap> read_mtl_map(TextScanner& scanner, MtlMapKind kind,
+std::optional<MtlMap> read_mtl_map(TextScanner& scanner, MtlMapKind kind, std::string_view material,
                                    std::vector<std::string>& warnings) {
-    return MapLine(scanner.rest(), scanner, warnings).read(kind);
+    return MapLine(scanner.rest(), scanner, material, warnings).read(kind);
 }
 
 std::optional<std::filesystem::path> find_named_file(

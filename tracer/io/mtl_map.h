@@ -34,7 +34,7 @@ struct MtlMap {
     char channel = '\0';           // -imfchan: r g b m l z; 0: not said
     std::string file;              // as the line spells it
     std::filesystem::path folder;  // of the library
-    std::string place;             // "a.mtl: line 3"
+    std::string place;             // "a.mtl: line 3: material "wood""
 };
 
 // The kind of a map keyword, in any case; nothing if it is none that is read.
@@ -43,7 +43,7 @@ std::optional<MtlMapKind> mtl_map_kind(std::string_view keyword);
 bool is_mtl_map(std::string_view keyword);
 
 // Reads the rest of the line. Nothing, and a warning, if it names no file.
-std::optional<MtlMap> read_mtl_map(TextScanner& scanner, MtlMapKind kind,
+std::optional<MtlMap> read_mtl_map(TextScanner& scanner, MtlMapKind kind, std::string_view material,
                                    std::vector<std::string>& warnings);
 
 // Finds a file that an MTL or OBJ names: as it is named, relative to one of the folders, else (an

@@ -1,5 +1,7 @@
 #include "tracer/io/mtl_textures.h"
 
+#include "tracer/scene/limits.h"
+
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
@@ -26,6 +28,16 @@ TexelCoding coding_of(MtlMapKind kind) {
 // A map of opacity means alpha if -imfchan asks for it, or if the image has some.
 bool takes_alpha(const MtlMap& map, const ByteImage& image) {
     return map.channel == '\0' ? !is_uniform(image, 3) : map.channel == 'm';
+}
+
+// -mm may make more of a mirror than a scene holds.
+void keep_bounce_in_range(Material& material) {
+    const TextureMap& map = material.map(MapSlot::reflect);
+    const glm::vec3& r = material.reflect;
+    const float most =
+        std::max({r.x, r.y, r.z}) * std::max(std::abs(map.base), std::abs(map.base + map.gain));
+    constexpr auto kMost = static_cast<float>(kMostBounce);
+    if (most > kMost) material.reflect *= 0.999f * kMost / most;
 }
 
 // How a map of opacity acts: shapes that are cut out are no surface at all.
@@ -75,7 +87,10 @@ void MtlTextures::grant(const Wish& wish) {
             break;
         case MtlMapKind::specular:
             give(MapSlot::specular);
-            if (material.reflects()) give(MapSlot::reflect);  // both are Ks
+            if (material.reflects()) {  // both are Ks
+                give(MapSlot::reflect);
+                keep_bounce_in_range(material);
+            }
             break;
         case MtlMapKind::emissive:
             give(MapSlot::emissive);
