@@ -243,8 +243,14 @@ TEST(Sets, AMillionSpheres) {
 }
 
 TEST(Sets, TreesAreSharedWithLaterAccels) {
+    // More than one leaf of each, as the box of a tree of one leaf is not looked at.
     std::vector<glm::vec4> spheres{{0, 0, 0, 1}, {0, 0, 3, 1}};
     std::vector<glm::vec4> ends{{0, 0, 0, 1}, {0, 0, 1, 1}};
+    for (int i = 0; i < 20; ++i) {
+        const auto x = static_cast<float>(20 + 3 * i);
+        spheres.emplace_back(x, 0, 0, 1);
+        ends.insert(ends.end(), {{x, 0, 0, 1}, {x, 0, 1, 1}});
+    }
     Scene scene;
     place(scene, SphereSetInstance{add_sphere_set(scene, {"balls", spheres, {}, {}})});
     place(scene, ConeSetInstance{add_cone_set(scene, {"twigs", ends, true, {}, {}})});

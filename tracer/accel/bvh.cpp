@@ -3,7 +3,13 @@
 #include "tracer/error.h"
 #include "tracer/parallel/parallel.h"
 
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 namespace raypick {
@@ -12,7 +18,6 @@ namespace {
 
 constexpr int kBins = 16;
 constexpr std::uint32_t kMaxLeaf = 4;
-constexpr float kTraversalCost = 1.0f;  // relative to one primitive test
 // Ranges above this are split one after the other, each on all threads; those below are built each
 // by one thread. Constants, so that the tree does not depend on the number of threads.
 constexpr std::size_t kSubtreeSize = 1u << 15;
@@ -221,17 +226,11 @@ private:
     // leaf.
     std::size_t partition(const Range& range, const RangeBounds& bounds, int threads) {
         const std::size_t count = range.size();
-        if (count == 1) return range.begin;
+        if (count <= kMaxLeaf) return range.begin;
         const Binning binning(bounds.centres);
         Split split;
         if (range.depth < kMaxSplitDepth)
             split = best_split(fill_bins(range, binning, threads), binning);
-        if (count <= kMaxLeaf) {
-            const float area = bounds.all.half_area();
-            const float leaf_cost = area * static_cast<float>(count);
-            if (split.axis < 0 || split.cost + kTraversalCost * area >= leaf_cost)
-                return range.begin;
-        }
         const auto begin = refs_.begin() + static_cast<std::ptrdiff_t>(range.begin);
         const auto end = refs_.begin() + static_cast<std::ptrdiff_t>(range.end);
         if (split.axis >= 0) {

@@ -53,7 +53,7 @@ PrimitiveTree build_tree(const std::array<const void*, 2>& arrays, std::size_t c
                          boxes[i] = box_of(i);
                  });
     if (options.stop.stop_requested()) throw Cancelled();
-    tree.bvh = build_bvh(boxes, options.threads, options.stop);
+    tree.bvh = widen(build_bvh(boxes, options.threads, options.stop));
     return tree;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tracer/accel/accel.h"
-#include "tracer/accel/bvh.h"
+#include "tracer/accel/wide_bvh.h"
 #include "tracer/scene/scene.h"
 
 #include <array>
@@ -17,7 +17,7 @@ namespace raypick {
 struct PrimitiveTree {
     std::array<const void*, 2> arrays{};
     std::size_t count = 0;  // of primitives
-    Bvh bvh;
+    WideBvh bvh;
 };
 
 using TreeList = std::vector<std::shared_ptr<const PrimitiveTree>>;

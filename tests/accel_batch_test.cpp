@@ -1,0 +1,317 @@
+// Batches of rays, on every instruction set that this machine has: bit for bit the answers of the
+// same rays one by one, and those of brute force.
+#include "tests/brute_force.h"
+#include "tests/tracer_scenes.h"
+#include "tracer/accel/accel.h"
+#include "tracer/accel/trace_rays.h"
+#include "tracer/error.h"
+#include "tracer/geometry/camera.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <string>
+
+namespace raypick {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// Rays side by side, in blocks of 16 x 4 pixels, from outside of the scene and from within.
+std::vector<Ray> coherent_rays(const Bounds& bounds, ImageSize size, Projection projection,
+                               std::uint64_t seed) {
+    Random random(seed);
+    std::vector<Ray> rays;
+    for (const double distance : {3.0, 0.9, 0.2}) {
+        Camera camera;
+        camera.at =
+            glm::dvec3(bounds.centre()) + 0.1 * glm::dvec3(bounds.extent()) * random.direction();
+        camera.eye =
+            glm::dvec3(bounds.centre()) +
+            distance * static_cast<double>(glm::length(bounds.extent())) * random.direction();
+        camera.projection = projection;
+        camera.height = 1.5 * static_cast<double>(glm::length(bounds.extent()));
+        const RayGenerator generator(camera, size);
+        for (int row = 0; row + 4 <= size.rows; row += 4) {
+            for (int col = 0; col + 16 <= size.cols; col += 16) {
+                for (int i = 0; i < 64; ++i) {
+                    const Pixel pixel{row + i / 16, col + i % 16};
+                    rays.push_back(generator.ray(pixel_centre(pixel)));
+                }
+            }
+        }
+    }
+    return rays;
+}
+
+// All of them towards one point, as shadow rays go.
+std::vector<Ray> shadow_rays(const Accel& accel, const std::vector<Ray>& eye_rays,
+                             const glm::vec3& light) {
+    std::vector<Ray> rays;
+    for (const Ray& eye : eye_rays) {
+        const auto hit = accel.intersect(eye);
+        if (!hit) continue;
+        Ray ray = ray_towards(eye.at(hit->t * 0.9999f), glm::dvec3(light));
+        ray.t_max = glm::distance(ray.origin, light);
+        rays.push_back(ray);
+    }
+    return rays;
+}
+
+void expect_as_one_by_one(const Accel& accel, const std::vector<Ray>& rays,
+                          const RayQuery& query = {}) {
+    std::vector<Hit> hits(rays.size());
+    std::vector<std::uint8_t> blocked(rays.size(), 7);
+    accel.intersect(rays, hits, query);
+    accel.occluded(rays, blocked, query);
+    int found = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Hit alone = accel.intersect(rays[i], query).value_or(Hit{});
+        found += alone.valid() ? 1 : 0;
+        ASSERT_EQ(hits[i], alone) << i << ": " << to_text(rays[i]);
+        ASSERT_EQ(blocked[i], alone.valid() ? 1 : 0) << i << ": " << to_text(rays[i]);
+    }
+    testing::Test::RecordProperty("hits", found);
+}
+
+class AccelBatch : public testing::TestWithParam<std::string> {
+protected:
+    void SetUp() override { use_instruction_set(GetParam()); }
+    void TearDown() override { use_instruction_set(""); }
+};
+
+void expect_all_ways(const Scene& scene, std::uint64_t seed) {
+    const Accel accel = accel_of(scene);
+    const BruteForce brute(scene);
+    std::vector<Ray> rays = coherent_rays(accel.bounds(), {24, 32}, Projection::perspective, seed);
+    for (const Ray& ray : rays_through(accel.bounds(), seed, 300))
+        rays.push_back(ray);
+    const std::vector<Ray> parallel =
+        coherent_rays(accel.bounds(), {16, 16}, Projection::orthographic, seed);
+    rays.insert(rays.end(), parallel.begin(), parallel.end());
+    expect_as_one_by_one(accel, rays);
+    expect_as_one_by_one(accel, shadow_rays(accel, rays, accel.bounds().max * 1.3f));
+    for (std::size_t i = 0; i < rays.size(); i += 5) {
+        ASSERT_EQ(complaint(accel.intersect(rays[i]), brute.all(rays[i])), "") << to_text(rays[i]);
+    }
+}
+
+Scene mixed_scene() {
+    Scene scene;
+    place_mesh(scene, soup_data(3, 300, 0.5), kNoMaterial, scale({1.5, -1.0, 1.0}));
+    place(scene, MeshInstance{0}, kNoMaterial, translate({0.2, 0.1, 0.0}));
+    place(scene, MeshInstance{0}, kNoMaterial, translate({0.2, 0.1, 0.0}));
+    place(scene, MeshInstance{0}, kNoMaterial, translate({3, 1, 0}) * rotate(130.0, {1, 2, 3}));
+    place_mesh(scene, ball_data(4));
+    place(scene, Sphere{{1.0, 0.0, 0.0}, 0.7});
+    place(scene, Box{{-0.2, -0.2, -0.2}, {0.9, 0.3, 0.3}});
+    place(scene, Torus{}, kNoMaterial, translate({-2, 0, 0}) * rotate(40.0, {1, 1, 0}));
+    place(scene, Cone{{2, 0, 2}, {2, 2, 2}, 0.7, 0.2, true});
+    place(scene, Plane{{0.0, 1.0, 0.1}, 1.5});
+    return scene;
+}
+
+TEST_P(AccelBatch, Soups) {
+    for (const double size : {1.0, 0.1, 0.01}) {
+        SCOPED_TRACE(size);
+        Scene scene;
+        place_mesh(scene, soup_data(7, 2000, size));
+        expect_all_ways(scene, 11);
+        if (HasFatalFailure()) return;
+    }
+}
+
+TEST_P(AccelBatch, TrianglesSmallerThanAPixel) {
+    Scene scene;
+    place_mesh(scene, ball_data(7));  // 131072 triangles
+    const Accel accel = accel_of(scene);
+    expect_as_one_by_one(accel,
+                         coherent_rays(accel.bounds(), {64, 64}, Projection::perspective, 5));
+}
+
+TEST_P(AccelBatch, AllShapesAndInstances) {
+    expect_all_ways(mixed_scene(), 3);
+}
+
+// Every ray through an edge or a vertex, and each triangle twice.
+TEST_P(AccelBatch, EdgesVerticesAndTies) {
+    Scene scene;
+    MeshData data = ball_data(2);
+    const std::vector<glm::uvec3> once = data.triangles;
+    data.triangles.insert(data.triangles.end(), once.rbegin(), once.rend());
+    place_mesh(scene, data);
+    place_mesh(scene, ball_data(2));
+    const Accel accel = accel_of(scene);
+    const BruteForce brute(scene);
+    std::vector<Ray> rays;
+    for (const glm::uvec3& t : once) {
+        const glm::vec3 a = data.positions[t.x];
+        const glm::vec3 b = data.positions[t.y];
+        for (const glm::vec3& target : {a, 0.5f * (a + b), b})
+            rays.push_back(ray_towards({0.01f, 0.02f, 0.03f}, glm::dvec3(target)));
+    }
+    expect_as_one_by_one(accel, rays);
+    std::vector<Hit> hits(rays.size());
+    accel.intersect(rays, hits);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        ASSERT_EQ(complaint(hits[i], brute.all(rays[i])), "") << to_text(rays[i]);
+}
+
+TEST_P(AccelBatch, TinyAndHugeScenesAndFarOnes) {
+    for (const double size : {1e-30, 1e-18, 1e-6, 1e6, 1e14, 1e20}) {
+        SCOPED_TRACE(size);
+        Scene scene;
+        MeshData data = soup_data(5, 500, 0.2);
+        for (glm::vec3& p : data.positions)
+            p *= static_cast<float>(size);
+        place_mesh(scene, data);
+        expect_all_ways(scene, 4);
+        if (HasFatalFailure()) return;
+    }
+    Scene far;
+    place_mesh(far, soup_data(6, 500, 0.2), kNoMaterial, translate({1e6, -2e6, 3e5}));
+    expect_all_ways(far, 5);
+}
+
+TEST_P(AccelBatch, MirrorRays) {
+    Scene scene;
+    place_mesh(scene, ball_data(5));
+    place_mesh(scene, soup_data(9, 1000, 0.3), kNoMaterial, translate({2, 0, 0}));
+    const Accel accel = accel_of(scene);
+    std::vector<Ray> rays;
+    for (const Ray& eye : coherent_rays(accel.bounds(), {48, 48}, Projection::perspective, 8)) {
+        const auto hit = accel.intersect(eye);
+        if (!hit) continue;
+        const glm::vec3 p = eye.at(hit->t * 0.9999f);
+        rays.push_back(ray_towards(p, glm::dvec3(p + glm::normalize(p))));
+    }
+    expect_as_one_by_one(accel, rays);
+}
+
+TEST_P(AccelBatch, SidesMasksAndIntervals) {
+    Scene scene = mixed_scene();
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+        scene.objects[i].sides =
+            i % 3 == 0 ? Sides::both : (i % 3 == 1 ? Sides::front_only : Sides::back_only);
+        scene.objects[i].mask = static_cast<std::uint32_t>(1 + i % 2);
+    }
+    const Accel accel = accel_of(scene);
+    std::vector<Ray> rays = coherent_rays(accel.bounds(), {24, 32}, Projection::perspective, 6);
+    Random random(1);
+    for (Ray& ray : rays) {
+        ray.t_min = static_cast<float>(random.unit() * 2.0);
+        ray.t_max = static_cast<float>(random.unit() * 10.0);
+    }
+    for (const Sides sides : {Sides::both, Sides::front_only, Sides::back_only}) {
+        for (const std::uint32_t mask : {1u, 2u, 3u, 4u}) {
+            RayQuery query;
+            query.sides = sides;
+            query.mask = mask;
+            expect_as_one_by_one(accel, rays, query);
+            if (HasFatalFailure()) return;
+        }
+    }
+}
+
+TEST_P(AccelBatch, ClipPlanesAndAccept) {
+    const Accel accel = accel_of(mixed_scene());
+    const std::vector<Ray> rays =
+        coherent_rays(accel.bounds(), {24, 32}, Projection::perspective, 6);
+    const ClipPlane plane{{1, 0, 0}, 0.1f};
+    RayQuery query;
+    query.clip_planes = {&plane, 1};
+    expect_as_one_by_one(accel, rays, query);
+    const auto odd = [](const Hit& hit) { return hit.primitive % 2 == 1; };
+    query.accept = odd;
+    expect_as_one_by_one(accel, rays, query);
+}
+
+TEST_P(AccelBatch, HolesLetRaysThrough) {
+    Scene scene;
+    Material leaf;
+    Texture checker;
+    checker.source = Checker{glm::vec4(1.0f), glm::vec4(0.0f)};
+    leaf.map(MapSlot::opacity).texture = add_texture(scene, checker);
+    leaf.map(MapSlot::opacity).u_row = {8, 0, 0};
+    leaf.map(MapSlot::opacity).v_row = {0, 8, 0};
+    const MaterialId material = add_material(scene, leaf);
+    place(scene, Rectangle{}, material);
+    MeshData data;
+    data.positions = {{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}};
+    data.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    data.triangles = {{0, 1, 2}, {0, 2, 3}};
+    for (int i = 0; i < 5; ++i)
+        place_mesh(scene, data, material, translate({0.1 * i, 0.2 * i, 0.0}));
+    const Accel accel = accel_of(scene);
+    const std::vector<Ray> rays =
+        coherent_rays(accel.bounds(), {48, 64}, Projection::perspective, 2);
+    expect_as_one_by_one(accel, rays);  // brute force knows nothing of holes
+    // Some rays go through the holes of all, and some don't.
+    std::vector<Hit> hits(rays.size());
+    accel.intersect(rays, hits);
+    const auto met =
+        std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.valid(); });
+    EXPECT_GT(met, 100);
+}
+
+TEST_P(AccelBatch, OddSizesAndRaysThatAreNone) {
+    const Accel accel = accel_of(mixed_scene());
+    std::vector<Ray> rays = coherent_rays(accel.bounds(), {16, 32}, Projection::perspective, 9);
+    Random random(2);
+    for (std::size_t i = 0; i < rays.size(); i += 7) {
+        Ray& ray = rays[i];
+        switch (i % 9) {
+            case 0:
+                ray.origin.x = kNaN;
+                break;
+            case 1:
+                ray.direction.y = kNaN;
+                break;
+            case 2:
+                ray.direction = glm::vec3(0.0f);
+                break;
+            case 3:
+                ray.direction.z = kInfinity;
+                break;
+            case 4:
+                ray.t_min = ray.t_max;
+                break;
+            case 5:
+                ray.t_min = kNaN;
+                break;
+            case 6:
+                ray.t_min = -5.0f;
+                break;
+            case 7:
+                ray.direction *= 3.0f;
+                break;
+            default:
+                ray.direction.x = -0.0f;
+                break;
+        }
+    }
+    for (const std::size_t count : {0u, 1u, 5u, 6u, 7u, 15u, 16u, 17u, 63u, 64u, 65u, 200u, 500u}) {
+        SCOPED_TRACE(count);
+        expect_as_one_by_one(accel, {rays.begin(), rays.begin() + static_cast<long>(count)});
+        if (HasFatalFailure()) return;
+    }
+    expect_as_one_by_one(accel_of(Scene{}), rays);
+}
+
+INSTANTIATE_TEST_SUITE_P(InstructionSets, AccelBatch, testing::ValuesIn(instruction_sets()),
+                         [](const auto& set) { return set.param; });
+
+TEST(InstructionSets, AreNamedAndCheckedAlways) {
+    ASSERT_FALSE(instruction_sets().empty());
+    EXPECT_THAT(
+        [] { use_instruction_set("MMX"); },
+        testing::ThrowsMessage<Error>(testing::AllOf(
+            testing::HasSubstr("\"MMX\""), testing::HasSubstr(instruction_sets().front()))));
+}
+
+}  // namespace
+}  // namespace raypick

@@ -1,0 +1,41 @@
+// What an Accel holds: the scene, its trees, and the tree over its objects.
+#pragma once
+
+#include "tracer/accel/hit.h"
+#include "tracer/accel/trees.h"
+#include "tracer/accel/wide_bvh.h"
+#include "tracer/geometry/transform.h"
+#include "tracer/scene/scene.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace raypick {
+
+// An object as rays meet it.
+struct Instance {
+    Transform object_from_world;
+    bool identity = true;
+    bool holes = false;  // it may be cut out
+    float slop = 0.0f;   // how far rounding may have moved a ray in object space, per unit
+    const PrimitiveTree* tree = nullptr;
+};
+
+// What the top tree's leaves hold: an object, or a part of one that has a tree.
+struct TopEntry {
+    std::uint32_t object = 0;
+    WideRef part;
+};
+
+struct AccelState {
+    std::shared_ptr<const Scene> scene;
+    SceneTrees trees;
+    std::vector<Instance> instances;       // one an object
+    std::vector<TopEntry> entries;         // of the finite objects
+    WideBvh top;                           // over the entries
+    std::vector<std::uint32_t> unbounded;  // infinite planes
+    Bounds bounds;                         // of the finite objects
+};
+
+}  // namespace raypick

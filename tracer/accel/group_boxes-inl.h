@@ -1,0 +1,154 @@
+// Boxes against a group of rays: all children at once against the whole group by interval
+// arithmetic, then those that are left against each ray. Included once for each instruction set.
+//
+// Source: Reshetov, Soupikov, Hurley, "Multi-Level Ray Tracing Algorithm", 2005; Wald, Boulos,
+// Shirley, "Ray Tracing Deformable Scenes Using Dynamic Bounding Volume Hierarchies", 2007.
+#if defined(RAYPICK_GROUP_BOXES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYPICK_GROUP_BOXES_INL_H
+#undef RAYPICK_GROUP_BOXES_INL_H
+#else
+#define RAYPICK_GROUP_BOXES_INL_H
+#endif
+
+#include "tracer/accel/ray_group-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace raypick::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+inline constexpr float kGrowGroup = 1.0f + 8.0f * 5.9604645e-8f;
+inline constexpr float kShrinkGroup = 1.0f - 8.0f * 5.9604645e-8f;
+
+// The children that some ray of the group may meet before `t_far`, and where it would enter them at
+// the earliest.
+HWY_INLINE void meet_group(const GroupSpace& space, const WideNode& node, float t_min, float t_far,
+                           BoxHits& hits) {
+    const hn::CappedTag<float, kWidth> d;
+    std::uint32_t mask = 0;
+    for (std::size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
+        auto near = hn::Set(d, t_min);
+        auto far = hn::Set(d, t_far);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const bool negative = space.first[axis] >= 3;
+            const float near_origin = negative ? space.origin_low[axis] - space.slop[axis]
+                                               : space.origin_high[axis] + space.slop[axis];
+            const float far_origin = negative ? space.origin_high[axis] + space.slop[axis]
+                                              : space.origin_low[axis] - space.slop[axis];
+            const auto low = hn::Set(d, space.inverse_low[axis]);
+            const auto high = hn::Set(d, space.inverse_high[axis]);
+            const auto to_first = hn::Sub(hn::Load(d, node.planes[space.first[axis]].data() + i),
+                                          hn::Set(d, near_origin));
+            const auto to_second = hn::Sub(hn::Load(d, node.planes[space.second[axis]].data() + i),
+                                           hn::Set(d, far_origin));
+            near = hn::Max(near, hn::Min(hn::Mul(to_first, low), hn::Mul(to_first, high)));
+            far = hn::Min(far, hn::Max(hn::Mul(to_second, low), hn::Mul(to_second, high)));
+        }
+        near = hn::Mul(near, hn::Set(d, kShrinkGroup));
+        far = hn::Mul(far, hn::Set(d, kGrowGroup));
+        hn::Store(near, d, hits.enter.data() + i);
+        std::uint8_t bits[8] = {};
+        hn::StoreMaskBits(d, hn::Le(near, far), bits);
+        mask |= static_cast<std::uint32_t>(bits[0]) << i;
+    }
+    hits.mask = mask;
+}
+
+// Of the rays in `mask` those that may meet child i before their t_far.
+HWY_INLINE RayMask meet_rays(const GroupSpace& space, const GroupLimits& limits,
+                             const WideNode& node, std::size_t i, RayMask mask) {
+    const Rays d;
+    float first[3];
+    float second[3];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float slop = space.first[axis] >= 3 ? -space.slop[axis] : space.slop[axis];
+        first[axis] = node.planes[space.first[axis]][i] - slop;
+        second[axis] = node.planes[space.second[axis]][i] + slop;
+        if (space.one_origin) {
+            first[axis] -= space.origin_low[axis];
+            second[axis] -= space.origin_low[axis];
+        }
+    }
+    RayMask met = 0;
+    each_vector(mask, [&](std::size_t ray, RayMask bits) HWY_ATTR {
+        RayFloats near[3];
+        RayFloats far[3];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            auto to_first = hn::Set(d, first[axis]);
+            auto to_second = hn::Set(d, second[axis]);
+            if (!space.one_origin) {
+                const auto origin = hn::Load(d, space.rays.origin[axis].data() + ray);
+                to_first = hn::Sub(to_first, origin);
+                to_second = hn::Sub(to_second, origin);
+            }
+            const auto inverse = hn::Load(d, space.rays.inverse[axis].data() + ray);
+            near[axis] = hn::Mul(to_first, inverse);
+            far[axis] = hn::Mul(to_second, inverse);
+        }
+        const auto enter =
+            hn::Max(hn::Load(d, limits.t_min.data() + ray),
+                    hn::Mul(hn::Max(hn::Max(near[0], near[1]), near[2]), hn::Set(d, kShrinkGroup)));
+        const auto leave =
+            hn::Min(hn::Load(d, limits.t_far.data() + ray),
+                    hn::Mul(hn::Min(hn::Min(far[0], far[1]), far[2]), hn::Set(d, kGrowGroup)));
+        met |= (ray_bits(hn::Le(enter, leave)) & bits) << ray;
+    });
+    return met;
+}
+
+// The largest t_far of the rays in `mask`; -infinity if none is to be followed further.
+HWY_INLINE float farthest(const GroupLimits& limits, RayMask mask) {
+    const Rays d;
+    auto far = hn::Set(d, -std::numeric_limits<float>::infinity());
+    each_vector(mask, [&](std::size_t ray, RayMask)
+                          HWY_ATTR { far = hn::Max(far, hn::Load(d, limits.t_far.data() + ray)); });
+    return hn::GetLane(hn::MaxOfLanes(d, far));
+}
+
+// Calls leaf(ref, mask) for leaves that rays of the mask may meet, near ones first, and few(ref,
+// mask) for what is left of the tree below a place where no more than `few_rays` go on together.
+template <typename Leaf, typename Few>
+void walk_group(const WideBvh& bvh, const WideRef& start, const GroupSpace& space,
+                const GroupLimits& limits, RayMask rays, int few_rays, const Leaf& leaf,
+                const Few& few) {
+    struct Waiting {
+        RayMask mask;
+        std::uint32_t first;
+        std::uint32_t count;
+        float enter;
+    };
+    Waiting stack[WideBvh::kMostWaiting];  // NOLINT: not initialised, for it is large
+    std::size_t waiting = 0;
+    stack[waiting++] = {rays, start.first, start.count, 0.0f};
+    BoxHits hits;
+    while (waiting > 0) {
+        const Waiting at = stack[--waiting];
+        const float far = farthest(limits, at.mask);
+        if (!(at.enter <= far)) continue;
+        if (at.count > 0) {
+            leaf(WideRef{at.first, at.count}, at.mask);
+            continue;
+        }
+        if (std::popcount(at.mask) <= few_rays) {
+            few(WideRef{at.first, 0}, at.mask);
+            continue;
+        }
+        const WideNode& node = bvh.nodes[at.first];
+        meet_group(space, node, 0.0f, far, hits);
+        const std::size_t nearer = waiting;
+        for (std::uint32_t left = hits.mask; left != 0; left &= left - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+            const RayMask mask = meet_rays(space, limits, node, i, at.mask);
+            if (mask == 0) continue;
+            const float enter = hits.enter[i];
+            std::size_t place = waiting++;
+            for (; place > nearer && stack[place - 1].enter < enter; --place)
+                stack[place] = stack[place - 1];
+            stack[place] = {mask, node.child[i], node.count[i], enter};
+        }
+    }
+}
+
+}  // namespace raypick::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard

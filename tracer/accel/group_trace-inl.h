@@ -1,0 +1,307 @@
+// A group of rays through the objects of a scene. Included once for each instruction set.
+#if defined(RAYPICK_GROUP_TRACE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYPICK_GROUP_TRACE_INL_H
+#undef RAYPICK_GROUP_TRACE_INL_H
+#else
+#define RAYPICK_GROUP_TRACE_INL_H
+#endif
+
+#include "tracer/accel/decide_triangles-inl.h"
+#include "tracer/accel/group_boxes-inl.h"
+#include "tracer/accel/group_search-inl.h"
+#include "tracer/accel/group_triangles-inl.h"
+#include "tracer/accel/single_ray-inl.h"
+
+#include <span>
+
+HWY_BEFORE_NAMESPACE();
+namespace raypick::HWY_NAMESPACE {
+
+// Fewer rays than these are followed one by one.
+inline constexpr int kFewRays = 3;
+
+// Beyond it float products of three coordinates overflow.
+inline constexpr float kFarthestReach = 1e11f;
+
+inline float largest_coordinate(const Bounds& box) {
+    return std::max(largest_of(box.min), largest_of(box.max));
+}
+
+// `Group` is ClosestOfGroup or AnyOfGroup.
+template <typename Group>
+class GroupTrace {
+public:
+    GroupTrace(const AccelState& state, std::span<const Ray> rays, const RayQuery& query,
+               Group& search)
+        : state_(state), rays_(rays), query_(query), search_(search) {}
+
+    // The rays of the mask, all usable, in one octant and with t_min >= 0; `world` holds them.
+    void run(const GroupRays& group, RayMask mask) {
+        for (const std::uint32_t object : state_.unbounded)
+            each_on_its_own({object, {}}, mask);
+        if (state_.top.empty()) return;
+        const GroupSpace world(group, mask, 0.0f, largest_coordinate(state_.top.bounds));
+        walk_group(
+            state_.top, state_.top.root, world, search_.limits, mask, kFewRays,
+            [&](const WideRef& leaf, RayMask met) HWY_ATTR {
+                for (std::uint32_t i = 0; i < leaf.count; ++i) {
+                    enter(state_.entries[state_.top.indices[leaf.first + i]], world, met);
+                }
+            },
+            [&](const WideRef& part, RayMask met) HWY_ATTR { finish_top(part, met); });
+    }
+
+private:
+    // What is left of the top tree, ray by ray.
+    void finish_top(const WideRef& part, RayMask mask) {
+        each_ray(mask, [&](std::size_t ray) HWY_ATTR {
+            const SlabRay slabs(rays_[ray].origin, rays_[ray].direction, 0.0f);
+            walk(
+                state_.top, part, slabs, rays_[ray].t_min,
+                [&]() HWY_ATTR { return search_.limits.t_far[ray]; },
+                [&](const WideRef& leaf) HWY_ATTR {
+                    for (std::uint32_t i = 0; i < leaf.count; ++i) {
+                        const TopEntry& entry = state_.entries[state_.top.indices[leaf.first + i]];
+                        each_on_its_own(entry, RayMask{1} << ray);
+                    }
+                    return false;
+                });
+        });
+    }
+
+    void each_on_its_own(const TopEntry& entry, RayMask mask) {
+        each_ray(mask, [&](std::size_t ray) HWY_ATTR {
+            auto one = one_of(search_, ray, entry.object);
+            trace_entry(state_, entry, rays_[ray], query_, one);
+        });
+    }
+
+    void enter(const TopEntry& entry, const GroupSpace& world, RayMask mask) {
+        const Object& object = state_.scene->objects[entry.object];
+        if ((object.mask & query_.mask) == 0) return;
+        const Instance& instance = state_.instances[entry.object];
+        const auto* mesh = std::get_if<MeshInstance>(&object.shape);
+        const float reach = mesh != nullptr ? largest_coordinate(instance.tree->bvh.bounds) : 0.0f;
+        if (mesh == nullptr || !(reach < kFarthestReach)) {
+            each_on_its_own(entry, mask);
+            return;
+        }
+        if (instance.identity) {
+            enter_mesh(entry, world, mask);
+            return;
+        }
+        GroupRays turned;
+        each_ray(mask, [&](std::size_t ray) HWY_ATTR {
+            const ObjectRay local = object_ray(instance, rays_[ray]);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const auto i = static_cast<int>(axis);
+                turned.origin[axis][ray] = static_cast<float>(local.origin[i]);
+                turned.direction[axis][ray] = static_cast<float>(local.direction[i]);
+            }
+        });
+        turned.invert();
+        // Rays of one octant may lie in several here.
+        for (const RayMask same : turned.octants(mask)) {
+            if (std::popcount(same) <= kFewRays) {
+                each_on_its_own(entry, same);
+            } else {
+                enter_mesh(entry, GroupSpace(turned, same, instance.slop, reach), same);
+            }
+        }
+    }
+
+    void enter_mesh(const TopEntry& entry, const GroupSpace& space, RayMask mask) {
+        const Instance& instance = state_.instances[entry.object];
+        const Object& object = state_.scene->objects[entry.object];
+        const Mesh& mesh = state_.scene->meshes[std::get<MeshInstance>(object.shape).mesh];
+        const WideBvh& bvh = instance.tree->bvh;
+        const ShownSides shown{shows(object.sides, true) && shows(query_.sides, true),
+                               shows(object.sides, false) && shows(query_.sides, false)};
+        if (!shown.front && !shown.back) return;
+        walk_group(
+            bvh, entry.part, space, search_.limits, mask, kFewRays,
+            [&](const WideRef& leaf, RayMask met) HWY_ATTR {
+                for (std::uint32_t i = 0; i < leaf.count; ++i) {
+                    meet(entry.object, mesh, bvh.indices[leaf.first + i], space, shown,
+                         instance.holes, met);
+                }
+            },
+            [&](const WideRef& part, RayMask met) HWY_ATTR {
+                each_on_its_own({entry.object, part}, met);
+            });
+    }
+
+    HWY_INLINE void meet(std::uint32_t object, const Mesh& mesh, std::uint32_t primitive,
+                         const GroupSpace& space, const ShownSides& shown, bool holes,
+                         RayMask mask) {
+        const glm::uvec3 corner = mesh.triangles[primitive];
+        const GroupTriangle triangle = group_triangle(
+            space, mesh.positions[corner.x], mesh.positions[corner.y], mesh.positions[corner.z]);
+        each_vector(mask, [&](std::size_t ray, RayMask bits) HWY_ATTR {
+            const Verdict verdict = judge(space, search_.limits, triangle, shown, ray);
+            if ((verdict.may & bits) != 0) settle(verdict, ray, bits, object, primitive, holes);
+        });
+    }
+
+    void settle(const Verdict& verdict, std::size_t ray, RayMask bits, std::uint32_t object,
+                std::uint32_t primitive, bool holes) {
+        if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
+            take(search_, verdict, ray, bits, object, primitive, holes);
+        } else {
+            const RayMask sure = holes ? 0 : verdict.sure & bits;
+            search_.block(sure << ray);
+            each_ray(verdict.may & bits & ~sure, [&](std::size_t i) HWY_ATTR {
+                AnyOfOne one{search_, ray + i};
+                trace_primitive(state_, object, primitive, rays_[ray + i], query_, one);
+            });
+        }
+    }
+
+    const AccelState& state_;
+    std::span<const Ray> rays_;
+    const RayQuery& query_;
+    Group& search_;
+};
+
+// Rays as they come, and which of them can go in groups.
+struct Chunk {
+    GroupRays world;
+    GroupLimits limits;
+    std::array<RayMask, 8> octants{};
+    RayMask alone = 0;
+
+    Chunk(const AccelState& state, std::span<const Ray> rays, const RayQuery& query) {
+        const bool plain =
+            !query.accept && query.clip_planes.empty() &&
+            (state.top.empty() || largest_coordinate(state.top.bounds) < kFarthestReach);
+        if (!plain) {
+            for (std::size_t i = 0; i < rays.size(); ++i)
+                alone |= RayMask{usable(rays[i]) ? 1u : 0u} << i;
+            return;
+        }
+        for (std::size_t i = 0; i < kGroup; ++i)
+            set(i, i < rays.size() ? rays[i] : rays[0]);
+        const RayMask there = rays.size() == kGroup ? ~RayMask{0} : (RayMask{1} << rays.size()) - 1;
+        const RayMask groupable = there & ordinary();
+        each_ray(there & ~groupable,
+                 [&](std::size_t i) HWY_ATTR { alone |= RayMask{usable(rays[i]) ? 1u : 0u} << i; });
+        world.invert();
+        octants = world.octants(groupable);
+        for (RayMask& group : octants) {
+            if (std::popcount(group) > kFewRays) continue;
+            alone |= group;
+            group = 0;
+        }
+    }
+
+private:
+    HWY_INLINE void set(std::size_t i, const Ray& ray) {
+        world.origin[0][i] = ray.origin.x;
+        world.origin[1][i] = ray.origin.y;
+        world.origin[2][i] = ray.origin.z;
+        world.direction[0][i] = ray.direction.x;
+        world.direction[1][i] = ray.direction.y;
+        world.direction[2][i] = ray.direction.z;
+        limits.t_min[i] = ray.t_min;
+        limits.t_far[i] = ray.t_max;
+    }
+
+    // Usable, from t_min >= 0 on and not too far away for float; arranged so that a NaN is not.
+    [[nodiscard]] RayMask ordinary() const {
+        const Rays d;
+        RayMask result = 0;
+        for (std::size_t i = 0; i < kGroup; i += kAtOnce) {
+            auto steepest = hn::Zero(d);
+            auto fine = hn::Ge(hn::Load(d, limits.t_min.data() + i), hn::Zero(d));
+            fine = hn::And(fine, hn::Lt(hn::Load(d, limits.t_min.data() + i),
+                                        hn::Load(d, limits.t_far.data() + i)));
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const auto o = hn::Abs(hn::Load(d, world.origin[axis].data() + i));
+                const auto along = hn::Abs(hn::Load(d, world.direction[axis].data() + i));
+                fine = hn::And(fine, hn::Lt(o, hn::Set(d, kFarthestReach)));
+                fine = hn::And(fine, hn::Lt(along, hn::Set(d, 2.0f)));
+                steepest = hn::Max(steepest, along);
+            }
+            fine = hn::And(fine, hn::Gt(steepest, hn::Set(d, 0.5f)));
+            result |= ray_bits(fine) << i;
+        }
+        return result;
+    }
+};
+
+// The winner among a ray's candidate and its rivals by the tie rule of hit.h.
+inline void choose(const AccelState& state, const ClosestOfGroup& search, std::size_t ray,
+                   const Ray& from, const RayQuery& query, Hit& hit) {
+    const auto offer_all = [&](auto& one) HWY_ATTR {
+        if (((search.found >> ray) & 1) != 0) {
+            trace_primitive(state, search.candidate_object[ray], search.candidate_primitive[ray],
+                            from, query, one);
+        }
+        for (std::size_t i = 0; i < search.rival_count; ++i) {
+            const ClosestOfGroup::Rival& rival = search.rivals[i];
+            if (rival.ray != ray) continue;
+            trace_primitive(state, rival.object, rival.primitive, from, query, one);
+        }
+    };
+    ClosestSearch closest(from.t_max);
+    offer_all(closest);
+    if (!closest.winner().valid() || !closest.ambiguous()) {
+        hit = closest.winner();
+        return;
+    }
+    LowestInWindow lowest(closest.limit());
+    offer_all(lowest);
+    hit = lowest.winner();
+}
+
+// The candidates of rays without rivals, several at once; those that this can't decide stay in the
+// mask that it returns.
+inline RayMask decide_sole(const AccelState& state, const ClosestOfGroup& search, RayMask mask,
+                           std::span<const Ray> rays, std::span<Hit> hits) {
+    const Scene& scene = *state.scene;
+    RayMask left = 0;
+    TrianglePairs pairs;
+    TriangleAnswers answers;
+    std::array<std::size_t, kDoublesAtOnce> lanes{};
+    while (mask != 0) {
+        std::size_t count = 0;
+        for (; mask != 0 && count < kDoublesAtOnce; mask &= mask - 1) {
+            const auto ray = static_cast<std::size_t>(std::countr_zero(mask));
+            const std::uint32_t object = search.candidate_object[ray];
+            const auto* mesh = std::get_if<MeshInstance>(&scene.objects[object].shape);
+            if (mesh == nullptr) {
+                left |= RayMask{1} << ray;
+                continue;
+            }
+            const Mesh& of = scene.meshes[mesh->mesh];
+            const glm::uvec3 corner = of.triangles[search.candidate_primitive[ray]];
+            const ObjectRay local = object_ray(state.instances[object], rays[ray]);
+            pairs.set(count, local.origin, local.direction, of.positions[corner.x],
+                      of.positions[corner.y], of.positions[corner.z]);
+            lanes[count++] = ray;
+        }
+        if (count == 0) break;
+        for (std::size_t i = count; i < kDoublesAtOnce; ++i)
+            pairs.set(i, glm::dvec3(0.0), glm::dvec3(1.0), {}, {}, {});
+        decide(pairs, answers);
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t ray = lanes[i];
+            const auto t = static_cast<float>(answers.t[i]);
+            if (((answers.hit >> i) & 1) == 0 || !(t > rays[ray].t_min && t < rays[ray].t_max)) {
+                left |= RayMask{1} << ray;
+                continue;
+            }
+            hits[ray] = {scene.objects[search.candidate_object[ray]].id,
+                         search.candidate_primitive[ray],
+                         t,
+                         {static_cast<float>(answers.u[i]), static_cast<float>(answers.v[i])},
+                         answers.determinant[i] > 0.0};
+        }
+    }
+    return left;
+}
+
+}  // namespace raypick::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard

@@ -1,0 +1,77 @@
+// One ray on its way through one object: which of its hits count.
+#pragma once
+
+#include "tracer/accel/accel_state.h"
+#include "tracer/accel/cut_out.h"
+#include "tracer/geometry/ray.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace raypick {
+
+inline bool inside_clip_planes(const Ray& ray, float t, std::span<const ClipPlane> planes) {
+    return std::all_of(planes.begin(), planes.end(), [&](const ClipPlane& plane) {
+        return glm::dot(plane.normal, ray.at(t)) + plane.d >= 0.0f;
+    });
+}
+
+inline bool shows(Sides sides, bool front_face) {
+    if (sides == Sides::both) return true;
+    return front_face == (sides == Sides::front_only);
+}
+
+// False for what is no ray: a NaN, an infinity, no direction, an empty interval.
+inline bool usable(const Ray& ray) {
+    const glm::vec3 sum = ray.origin + ray.direction;
+    const bool finite = std::isfinite(sum.x) && std::isfinite(sum.y) && std::isfinite(sum.z);
+    return finite && ray.direction != glm::vec3(0.0f) && ray.t_min < ray.t_max;
+}
+
+inline ObjectRay object_ray(const Instance& instance, const Ray& ray) {
+    if (instance.identity) return {glm::dvec3(ray.origin), glm::dvec3(ray.direction)};
+    return {instance.object_from_world.point(glm::dvec3(ray.origin)),
+            instance.object_from_world.vector(glm::dvec3(ray.direction))};
+}
+
+struct Passage {
+    const Scene& scene;
+    const Object& object;
+    const Instance& instance;
+    const Ray& ray;
+    const RayQuery& query;
+    ObjectRay local;
+
+    [[nodiscard]] bool admits(const Hit& hit) const {
+        if (!shows(object.sides, hit.front_face) || !shows(query.sides, hit.front_face)) {
+            return false;
+        }
+        if (!inside_clip_planes(ray, hit.t, query.clip_planes)) return false;
+        if (instance.holes && is_cut_out(scene, object, hit)) return false;
+        return query.accept(hit);
+    }
+    [[nodiscard]] bool in_range(float t, float limit) const {
+        return t > ray.t_min && t < ray.t_max && t <= limit;
+    }
+};
+
+// Offers to the search what a shape's intersection found; true: stop. `element` is the shape's
+// number in a set: that is then the primitive, whatever side of the shape was hit.
+template <typename Search>
+bool offer(const Passage& passage, const ShapeHits& hits, std::optional<std::uint32_t> element,
+           Search& search) {
+    for (int i = 0; i < hits.count; ++i) {
+        const ShapeHit& found = hits.hit[static_cast<std::size_t>(i)];
+        const auto t = static_cast<float>(found.t);
+        if (!passage.in_range(t, search.limit())) continue;
+        const Hit hit{passage.object.id, element.value_or(found.primitive), t, glm::vec2(found.uv),
+                      glm::dot(found.normal, passage.local.direction) < 0.0};
+        if (passage.admits(hit) && search.offer(hit)) return true;
+    }
+    return false;
+}
+
+}  // namespace raypick

@@ -1,0 +1,169 @@
+// Up to 64 rays that go the same way, as one space sees them. Included once for each instruction
+// set.
+#if defined(RAYPICK_RAY_GROUP_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYPICK_RAY_GROUP_INL_H
+#undef RAYPICK_RAY_GROUP_INL_H
+#else
+#define RAYPICK_RAY_GROUP_INL_H
+#endif
+
+#include "tracer/accel/wide_traversal-inl.h"
+#include "tracer/geometry/shapes.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace raypick::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+inline constexpr std::size_t kGroup = 64;
+using GroupFloats = std::array<float, kGroup>;
+using RayMask = std::uint64_t;  // bit i: ray i
+
+// As many rays of a group as one instruction takes.
+using Rays = hn::CappedTag<float, 16>;
+using RayFloats = hn::Vec<Rays>;
+inline constexpr std::size_t kAtOnce = hn::MaxLanes(Rays());
+inline constexpr RayMask kAllAtOnce = (RayMask{1} << kAtOnce) - 1;
+
+// Calls body(first ray, the mask's bits from there on) for each vector that has rays in the mask.
+template <typename Body>
+HWY_INLINE void each_vector(RayMask mask, const Body& body) {
+    while (mask != 0) {
+        const auto first = static_cast<std::size_t>(std::countr_zero(mask)) / kAtOnce * kAtOnce;
+        body(first, (mask >> first) & kAllAtOnce);
+        mask &= ~(kAllAtOnce << first);
+    }
+}
+
+template <typename Body>
+HWY_INLINE void each_ray(RayMask mask, const Body& body) {
+    for (; mask != 0; mask &= mask - 1)
+        body(static_cast<std::size_t>(std::countr_zero(mask)));
+}
+
+template <class M>
+HWY_INLINE RayMask ray_bits(M mask) {
+    std::uint8_t stored[8] = {};
+    hn::StoreMaskBits(Rays(), mask, stored);
+    return static_cast<RayMask>(stored[0]) | static_cast<RayMask>(stored[1]) << 8;
+}
+
+HWY_INLINE hn::Mask<Rays> ray_mask(RayMask bits) {
+    const std::uint8_t stored[8] = {static_cast<std::uint8_t>(bits),
+                                    static_cast<std::uint8_t>(bits >> 8)};
+    return hn::LoadMaskBits(Rays(), stored);
+}
+
+// Rays in a space, component by component.
+struct GroupRays {
+    // Directions so flat along an axis are taken for this steep, and boxes are widened instead.
+    static constexpr float kSteepest = 1e18f;
+
+    HWY_ALIGN std::array<GroupFloats, 3> origin;
+    HWY_ALIGN std::array<GroupFloats, 3> direction;
+    HWY_ALIGN std::array<GroupFloats, 3> inverse;  // 1 / direction, clamped
+
+    void invert() {
+        const Rays d;
+        const auto steepest = hn::Set(d, kSteepest);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            for (std::size_t i = 0; i < kGroup; i += kAtOnce) {
+                const auto along = hn::Load(d, direction[axis].data() + i);
+                const auto exact = hn::Div(hn::Set(d, 1.0f), along);
+                const auto fits = hn::Lt(hn::Abs(exact), steepest);
+                hn::Store(hn::IfThenElse(fits, exact, hn::CopySign(steepest, along)), d,
+                          inverse[axis].data() + i);
+            }
+        }
+    }
+
+    // The mask's rays by octant of direction; bit `axis` of the octant: negative there.
+    [[nodiscard]] std::array<RayMask, 8> octants(RayMask mask) const {
+        std::array<RayMask, 3> negative{};
+        const Rays d;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            for (std::size_t i = 0; i < kGroup; i += kAtOnce) {
+                const auto steep = hn::Load(d, inverse[axis].data() + i);
+                negative[axis] |= ray_bits(hn::Lt(steep, hn::Zero(d))) << i;
+            }
+        }
+        std::array<RayMask, 8> octants{};
+        for (std::size_t octant = 0; octant < 8; ++octant) {
+            octants[octant] = mask;
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                octants[octant] &= ((octant >> axis) & 1) != 0 ? negative[axis] : ~negative[axis];
+        }
+        return octants;
+    }
+};
+
+// Some of these rays, all in one octant, and the intervals that hold them.
+struct GroupSpace {
+    const GroupRays& rays;
+    std::array<float, 3> origin_low{}, origin_high{};
+    std::array<float, 3> inverse_low{}, inverse_high{};
+    std::array<std::size_t, 3> first{}, second{};  // the plane of a box that they meet first
+    std::array<float, 3> slop{};                   // boxes are widened by it
+    float steepest_direction = 0.0f;               // the largest component
+    float origin_rounding = 0.0f;  // the largest coordinate that origins were rounded from, or 0
+    bool one_origin = false;
+
+    // `relative_slop` is the instance's; `reach` the largest coordinate of what is to be met.
+    GroupSpace(const GroupRays& group, RayMask mask, float relative_slop, float reach)
+        : rays(group) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            measure(rays.origin[axis], mask, origin_low[axis], origin_high[axis]);
+            measure(rays.inverse[axis], mask, inverse_low[axis], inverse_high[axis]);
+            float low = 0.0f;
+            float high = 0.0f;
+            measure(rays.direction[axis], mask, low, high);
+            steepest_direction = std::max({steepest_direction, std::abs(low), std::abs(high)});
+            reach = std::max({reach, std::abs(origin_low[axis]), std::abs(origin_high[axis])});
+        }
+        one_origin = origin_low == origin_high;
+        origin_rounding = relative_slop > 0.0f ? reach : 0.0f;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const bool negative = inverse_high[axis] < 0.0f;
+            first[axis] = negative ? 3 + axis : axis;
+            second[axis] = negative ? axis : 3 + axis;
+            const bool flat = inverse_high[axis] >= GroupRays::kSteepest ||
+                              inverse_low[axis] <= -GroupRays::kSteepest;
+            slop[axis] = std::max(relative_slop, flat ? 0x1p-20f : 0.0f) * reach;
+        }
+    }
+
+private:
+    static void measure(const GroupFloats& numbers, RayMask mask, float& low, float& high) {
+        const Rays d;
+        auto least = hn::Set(d, std::numeric_limits<float>::infinity());
+        auto most = hn::Neg(least);
+        each_vector(mask, [&](std::size_t i, RayMask bits) HWY_ATTR {
+            const auto there = ray_mask(bits);
+            const auto some = hn::Load(d, numbers.data() + i);
+            least = hn::Min(least, hn::IfThenElse(there, some, least));
+            most = hn::Max(most, hn::IfThenElse(there, some, most));
+        });
+        low = hn::GetLane(hn::MinOfLanes(d, least));
+        high = hn::GetLane(hn::MaxOfLanes(d, most));
+    }
+};
+
+// How far each ray of a group is to be followed.
+struct GroupLimits {
+    HWY_ALIGN GroupFloats t_min;
+    HWY_ALIGN GroupFloats t_far;  // shrinks as hits are found; -infinity: no further
+};
+
+}  // namespace raypick::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard

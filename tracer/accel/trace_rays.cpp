@@ -1,0 +1,157 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "tracer/accel/trace_rays.cpp"
+#include <hwy/foreach_target.h>
+
+#include "tracer/accel/group_trace-inl.h"
+#include "tracer/accel/searches.h"
+#include "tracer/accel/single_ray-inl.h"
+#include "tracer/accel/trace_rays.h"
+#include "tracer/error.h"
+
+#include <algorithm>
+#include <utility>
+
+HWY_BEFORE_NAMESPACE();
+namespace raypick::HWY_NAMESPACE {
+
+std::optional<Hit> closest_hit(const AccelState& state, const Ray& ray, const RayQuery& query) {
+    ClosestSearch closest(ray.t_max);
+    trace_ray(state, ray, query, closest);
+    if (!closest.winner().valid()) return std::nullopt;
+    if (!closest.ambiguous()) return closest.winner();
+    LowestInWindow lowest(closest.limit());
+    trace_ray(state, ray, query, lowest);
+    return lowest.winner();
+}
+
+bool any_hit(const AccelState& state, const Ray& ray, const RayQuery& query) {
+    AnySearch any(ray.t_max);
+    trace_ray(state, ray, query, any);
+    return any.found();
+}
+
+std::vector<Hit> all_hits(const AccelState& state, const Ray& ray, const RayQuery& query) {
+    AllSearch all(ray.t_max);
+    trace_ray(state, ray, query, all);
+    return std::move(all).sorted();
+}
+
+namespace {
+
+void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::span<Hit> hits,
+                      const RayQuery& query) {
+    const Chunk chunk(state, rays, query);
+    std::fill(hits.begin(), hits.end(), Hit{});
+    RayMask alone = chunk.alone;
+    for (const RayMask mask : chunk.octants) {
+        if (mask == 0) continue;
+        ClosestOfGroup search;
+        search.limits = chunk.limits;
+        search.candidate_from.fill(std::numeric_limits<float>::infinity());
+        GroupTrace(state, rays, query, search).run(chunk.world, mask);
+        RayMask open = search.rivalled & ~search.lost;
+        open |= decide_sole(state, search, search.found & ~search.rivalled, rays, hits);
+        each_ray(open, [&](std::size_t ray)
+                           HWY_ATTR { choose(state, search, ray, rays[ray], query, hits[ray]); });
+        alone |= search.lost;
+    }
+    each_ray(alone, [&](std::size_t ray) HWY_ATTR {
+        hits[ray] = HWY_NAMESPACE::closest_hit(state, rays[ray], query).value_or(Hit{});
+    });
+}
+
+void any_of_chunk(const AccelState& state, std::span<const Ray> rays,
+                  std::span<std::uint8_t> blocked, const RayQuery& query) {
+    const Chunk chunk(state, rays, query);
+    RayMask found = 0;
+    for (const RayMask mask : chunk.octants) {
+        if (mask == 0) continue;
+        AnyOfGroup search;
+        search.limits = chunk.limits;
+        GroupTrace(state, rays, query, search).run(chunk.world, mask);
+        found |= search.blocked;
+    }
+    each_ray(chunk.alone, [&](std::size_t ray) HWY_ATTR {
+        if (HWY_NAMESPACE::any_hit(state, rays[ray], query)) found |= RayMask{1} << ray;
+    });
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        blocked[i] = static_cast<std::uint8_t>((found >> i) & 1);
+}
+
+}  // namespace
+
+void closest_hits(const AccelState& state, std::span<const Ray> rays, std::span<Hit> hits,
+                  const RayQuery& query) {
+    for (std::size_t i = 0; i < rays.size(); i += kGroup) {
+        const std::size_t count = std::min(kGroup, rays.size() - i);
+        closest_of_chunk(state, rays.subspan(i, count), hits.subspan(i, count), query);
+    }
+}
+
+void any_hits(const AccelState& state, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+              const RayQuery& query) {
+    for (std::size_t i = 0; i < rays.size(); i += kGroup) {
+        const std::size_t count = std::min(kGroup, rays.size() - i);
+        any_of_chunk(state, rays.subspan(i, count), blocked.subspan(i, count), query);
+    }
+}
+
+}  // namespace raypick::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace raypick {
+
+HWY_EXPORT(closest_hit);
+HWY_EXPORT(any_hit);
+HWY_EXPORT(all_hits);
+HWY_EXPORT(closest_hits);
+HWY_EXPORT(any_hits);
+
+std::optional<Hit> closest_hit(const AccelState& state, const Ray& ray, const RayQuery& query) {
+    return HWY_DYNAMIC_DISPATCH(closest_hit)(state, ray, query);
+}
+
+bool any_hit(const AccelState& state, const Ray& ray, const RayQuery& query) {
+    return HWY_DYNAMIC_DISPATCH(any_hit)(state, ray, query);
+}
+
+std::vector<Hit> all_hits(const AccelState& state, const Ray& ray, const RayQuery& query) {
+    return HWY_DYNAMIC_DISPATCH(all_hits)(state, ray, query);
+}
+
+void closest_hits(const AccelState& state, std::span<const Ray> rays, std::span<Hit> hits,
+                  const RayQuery& query) {
+    HWY_DYNAMIC_DISPATCH(closest_hits)(state, rays, hits, query);
+}
+
+void any_hits(const AccelState& state, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+              const RayQuery& query) {
+    HWY_DYNAMIC_DISPATCH(any_hits)(state, rays, blocked, query);
+}
+
+std::vector<std::string> instruction_sets() {
+    std::vector<std::string> names;
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets())
+        names.emplace_back(hwy::TargetName(target));
+    return names;
+}
+
+void use_instruction_set(std::string_view name) {
+    hwy::SetSupportedTargetsForTest(0);
+    std::int64_t wanted = 0;
+    std::string known;
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+        if (name == hwy::TargetName(target)) wanted = target;
+        known += std::string(known.empty() ? "" : ", ") + hwy::TargetName(target);
+    }
+    if (wanted == 0 && !name.empty()) {
+        throw Error("there is no instruction set \"" + std::string(name) + "\" here: it can be " +
+                    known);
+    }
+    hwy::SetSupportedTargetsForTest(wanted);
+    hwy::GetChosenTarget().DeInit();
+}
+
+}  // namespace raypick
+#endif
