@@ -74,4 +74,35 @@ bool offer(const Passage& passage, const ShapeHits& hits, std::optional<std::uin
     return false;
 }
 
+// The same of a sphere, whose uv is worked out for hits that count only.
+template <typename Search>
+bool offer_sphere(const Passage& passage, const Sphere& sphere, std::uint32_t element,
+                  Search& search) {
+    const auto roots = sphere_roots(sphere, passage.local);
+    if (!roots) return false;
+    for (const double root : roots->t) {
+        const auto t = static_cast<float>(root);
+        if (!passage.in_range(t, search.limit())) continue;
+        const bool front =
+            glm::dot(passage.local.origin + root * passage.local.direction - sphere.centre,
+                     passage.local.direction) < 0.0;
+        if (!shows(passage.object.sides, front)) continue;
+        const ShapeHit found = sphere_hit(sphere, passage.local, root);
+        const Hit hit{passage.object.id, element, t, glm::vec2(found.uv),
+                      glm::dot(found.normal, passage.local.direction) < 0.0};
+        if (passage.admits(hit) && search.offer(hit)) return true;
+    }
+    return false;
+}
+
+// Cones a little outside of what the search looks at don't matter.
+template <typename Search>
+ShapeHits hits_in_range(const Passage& passage, const Cone& cone, const Search& search) {
+    constexpr double kMargin = 1e-6;
+    const auto from = static_cast<double>(passage.ray.t_min);
+    const auto to = static_cast<double>(search.limit());
+    return intersect(cone, passage.local, from - kMargin * std::abs(from),
+                     to + kMargin * std::abs(to));
+}
+
 }  // namespace raypick

@@ -43,15 +43,14 @@ struct ShapeTrace {
     bool operator()(const SphereSetInstance& instance) const {
         const SphereSet& set = passage.scene.sphere_sets[instance.set];
         return each_primitive([&](std::uint32_t primitive) HWY_ATTR {
-            return offer(passage, raypick::intersect(sphere_of(set, primitive), passage.local),
-                         primitive, search);
+            return offer_sphere(passage, sphere_of(set, primitive), primitive, search);
         });
     }
 
     bool operator()(const ConeSetInstance& instance) const {
         const ConeSet& set = passage.scene.cone_sets[instance.set];
         return each_primitive([&](std::uint32_t primitive) HWY_ATTR {
-            return offer(passage, raypick::intersect(cone_of(set, primitive), passage.local),
+            return offer(passage, hits_in_range(passage, cone_of(set, primitive), search),
                          primitive, search);
         });
     }
@@ -84,7 +83,7 @@ struct ShapeTrace {
         }
         if (const auto* spheres = std::get_if<SphereSetInstance>(&shape)) {
             const Sphere sphere = sphere_of(scene.sphere_sets[spheres->set], number);
-            return offer(passage, raypick::intersect(sphere, passage.local), number, search);
+            return offer_sphere(passage, sphere, number, search);
         }
         if (const auto* cones = std::get_if<ConeSetInstance>(&shape)) {
             const Cone cone = cone_of(scene.cone_sets[cones->set], number);

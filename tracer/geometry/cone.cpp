@@ -145,7 +145,7 @@ ShapeHit cap_hit(const Cone& cone, const Profile& profile, const AxialRay& ray, 
 
 }  // namespace
 
-ShapeHits intersect(const Cone& cone, const ObjectRay& ray) {
+ShapeHits intersect(const Cone& cone, const ObjectRay& ray, double from, double to) {
     const Profile profile = profile_of(cone);
     AxialRay axial = axial_ray(cone, profile, ray);
     std::optional<Interval> planes = between_planes(axial, profile.length);
@@ -163,6 +163,7 @@ ShapeHits intersect(const Cone& cone, const ObjectRay& ray) {
 
     ShapeHits hits;
     const auto add = [&](double t, bool on_side, std::uint32_t cap) {
+        if (axial.start + t < from || axial.start + t > to) return;
         const double radius = cap == kBaseCap ? cone.base_radius : cone.apex_radius;
         auto& hit = hits.hit[static_cast<std::size_t>(hits.count)];
         if (on_side || radius == 0.0) {

@@ -19,14 +19,6 @@ glm::dvec2 sphere_uv(const glm::dvec3& unit_normal) {
     return {longitude < 0.0 ? longitude + 1.0 : longitude, colatitude};
 }
 
-ShapeHit sphere_hit(const Sphere& sphere, const ObjectRay& ray, double t) {
-    ShapeHit hit;
-    hit.t = t;
-    hit.normal = (ray.origin + t * ray.direction - sphere.centre) / sphere.radius;
-    hit.uv = sphere_uv(glm::normalize(hit.normal));
-    return hit;
-}
-
 // The coordinates other than the one along which the plane's normal is longest.
 glm::dvec2 plane_uv(const Plane& plane, const glm::dvec3& p) {
     const glm::dvec3 n = glm::abs(plane.normal);
@@ -54,22 +46,36 @@ ShapeHit box_hit(const Box& box, const ObjectRay& ray, double t, int axis, bool 
 
 }  // namespace
 
+ShapeHit sphere_hit(const Sphere& sphere, const ObjectRay& ray, double t) {
+    ShapeHit hit;
+    hit.t = t;
+    hit.normal = (ray.origin + t * ray.direction - sphere.centre) / sphere.radius;
+    hit.uv = sphere_uv(glm::normalize(hit.normal));
+    return hit;
+}
+
 // Numerically robust form of the quadratic: Haines, Guenther, Akenine-Moeller, "Precision
 // Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019.
-ShapeHits intersect(const Sphere& sphere, const ObjectRay& ray) {
+std::optional<SphereRoots> sphere_roots(const Sphere& sphere, const ObjectRay& ray) {
     const glm::dvec3 f = ray.origin - sphere.centre;
     const double a = glm::dot(ray.direction, ray.direction);
     const double b = -glm::dot(f, ray.direction);
     const glm::dvec3 closest = f + (b / a) * ray.direction;
     const double squared_radius = sphere.radius * sphere.radius;
     const double discriminant = squared_radius - glm::dot(closest, closest);
-    if (!(discriminant >= 0.0)) return {};
+    if (!(discriminant >= 0.0)) return std::nullopt;
     const double q = b + std::copysign(std::sqrt(a * discriminant), b);
     const double c = glm::dot(f, f) - squared_radius;
     double t0 = q != 0.0 ? c / q : 0.0;
     double t1 = q / a;
     if (t0 > t1) std::swap(t0, t1);
-    return {{{sphere_hit(sphere, ray, t0), sphere_hit(sphere, ray, t1)}}, 2};
+    return SphereRoots{{t0, t1}};
+}
+
+ShapeHits intersect(const Sphere& sphere, const ObjectRay& ray) {
+    const auto roots = sphere_roots(sphere, ray);
+    if (!roots) return {};
+    return {{{sphere_hit(sphere, ray, roots->t[0]), sphere_hit(sphere, ray, roots->t[1])}}, 2};
 }
 
 // The notes' ray-plane formula with the plane's d, which they drop.

@@ -13,7 +13,9 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -186,13 +188,24 @@ struct ShapeHits {
     int count = 0;
 };
 
+// Where a ray's line meets a sphere; nothing if it misses. The hit at one of them takes an arc
+// tangent more.
+struct SphereRoots {
+    double t[2] = {0.0, 0.0};  // ascending
+};
+std::optional<SphereRoots> sphere_roots(const Sphere& sphere, const ObjectRay& ray);
+ShapeHit sphere_hit(const Sphere& sphere, const ObjectRay& ray, double t);
+
 ShapeHits intersect(const Sphere& sphere, const ObjectRay& ray);
 ShapeHits intersect(const Plane& plane, const ObjectRay& ray);
 ShapeHits intersect(const Triangle& triangle, const ObjectRay& ray);
 ShapeHits intersect(const Box& box, const ObjectRay& ray);
 ShapeHits intersect(const Disk& disk, const ObjectRay& ray);
 ShapeHits intersect(const Rectangle& rectangle, const ObjectRay& ray);
-ShapeHits intersect(const Cone& cone, const ObjectRay& ray);
+// Hits outside of [from, to] may be left out.
+ShapeHits intersect(const Cone& cone, const ObjectRay& ray,
+                    double from = -std::numeric_limits<double>::infinity(),
+                    double to = std::numeric_limits<double>::infinity());
 ShapeHits intersect(const Torus& torus, const ObjectRay& ray);
 
 }  // namespace raypick
