@@ -1,12 +1,11 @@
 // A bounding volume hierarchy over boxes: it knows boxes and indices, nothing else.
-//
-// Source: binned surface area heuristic after Wald, "On fast Construction of SAH-based Bounding
-// Volume Hierarchies", 2007.
 #pragma once
 
 #include "tracer/geometry/bounds.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -34,8 +33,46 @@ struct Bvh {
     }
 };
 
-// Boxes that are empty or not finite are left out. The tree is the same for any number of threads
-// and at most kMaxDepth deep. Throws Cancelled.
+// What rays pay, for the surface area heuristic. A leaf's boxes are tested in blocks, as SIMD does.
+struct LeafCosts {
+    float node = 1.0f;             // of visiting an inner node, that is two boxes
+    float block = 1.0f;            // of testing a block of a leaf's boxes
+    std::uint32_t block_size = 1;  // boxes in a block, a power of two
+    std::uint32_t min_leaf = 1;    // so few boxes are a leaf in any case
+    std::uint32_t max_leaf = 4;    // no leaf holds more
+};
+
+// For a tree that is made 8 wide and whose leaves are tested four or eight boxes at once. A wide
+// node stands for about three levels of binary ones.
+inline constexpr LeafCosts kWideLeaves{
+    .node = 0.4f, .block = 1.0f, .block_size = 4, .min_leaf = 4, .max_leaf = 8};
+
+struct BvhOptions {
+    LeafCosts costs;
+    int threads = 0;       // 0: all cores. The tree is the same for any number
+    std::stop_token stop;  // building then throws Cancelled
+};
+
+// Sets boxes[i] to the box of primitive first + i. Several threads call it at once.
+using BoxSource = std::function<void(std::size_t first, std::span<Bounds> boxes)>;
+
+// A tree for many rays. Boxes that are empty or not finite are left out. At most kMaxDepth deep.
+// Throws Cancelled, or std::bad_alloc: at its peak it takes 32 bytes a box beside the tree itself.
+Bvh build_bvh(std::size_t count, const BoxSource& boxes, const BvhOptions& options);
 Bvh build_bvh(std::span<const Bounds> boxes, int threads, const std::stop_token& stop);
+
+// The same sooner: a first tree to be used until the one for many rays is there. Boxes that are
+// near each other along a space-filling curve are put into one leaf without a look at other ways.
+Bvh build_bvh_fast(std::size_t count, const BoxSource& boxes, const BvhOptions& options);
+
+// Gives the nodes the bounds of moved boxes; which boxes stand in which leaf remains. The tree gets
+// slower the more the order of things has changed: sah_cost tells. A box that is empty or not
+// finite counts for nothing, and one that was left out when the tree was built remains so. Throws
+// Cancelled; the tree then is good for another refit only.
+void refit(Bvh& bvh, const BoxSource& boxes, int threads, const std::stop_token& stop);
+
+// What a random ray through the root's box pays on average (MacDonald and Booth, "Heuristics for
+// Ray Tracing Using Space Subdivision", 1990). 0 for an empty tree.
+double sah_cost(const Bvh& bvh, const LeafCosts& costs);
 
 }  // namespace raypick

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 #include <variant>
 
 namespace raypick {
@@ -38,60 +39,95 @@ Bounds cone_box(const ConeSet& set, std::size_t index) {
     return rounded_outwards(extent.min, extent.max);
 }
 
-template <typename BoxOf>
-PrimitiveTree build_tree(const std::array<const void*, 2>& arrays, std::size_t count,
-                         const BuildOptions& options, const BoxOf& box_of) {
-    constexpr std::size_t kChunk = 1u << 16;
-    PrimitiveTree tree;
-    tree.arrays = arrays;
-    tree.count = count;
-    std::vector<Bounds> boxes(count);
-    parallel_for((count + kChunk - 1) / kChunk, options.threads, options.stop,
-                 [&](std::size_t chunk) {
-                     const std::size_t end = std::min(count, (chunk + 1) * kChunk);
-                     for (std::size_t i = chunk * kChunk; i < end; ++i)
-                         boxes[i] = box_of(i);
-                 });
-    if (options.stop.stop_requested()) throw Cancelled();
-    tree.bvh = widen(build_bvh(boxes, options.threads, options.stop));
-    return tree;
-}
+// The arrays that a tree is built over, and how many primitives and which boxes they make.
+struct TreeSource {
+    std::array<const void*, 2> arrays{};
+    std::size_t count = 0;
+    BoxSource boxes;
+};
 
 template <typename BoxOf>
-std::shared_ptr<const PrimitiveTree> find_or_build(const TreeList* known,
-                                                   const std::array<const void*, 2>& arrays,
-                                                   std::size_t count, const BuildOptions& options,
-                                                   const BoxOf& box_of) {
-    if (known != nullptr) {
-        const auto found = std::find_if(known->begin(), known->end(), [&](const auto& tree) {
-            return tree->arrays == arrays && tree->count == count;
-        });
-        if (found != known->end()) return *found;
+BoxSource one_by_one(const BoxOf& box_of) {
+    return [box_of](std::size_t first, std::span<Bounds> boxes) {
+        for (std::size_t i = 0; i < boxes.size(); ++i)
+            boxes[i] = box_of(first + i);
+    };
+}
+
+TreeSource source_of(const Mesh& mesh) {
+    return {{mesh.positions.data(), mesh.triangles.data()},
+            mesh.triangles.size(),
+            one_by_one([&mesh](std::size_t i) { return triangle_box(mesh, i); })};
+}
+
+TreeSource source_of(const SphereSet& set) {
+    return {{set.spheres.data(), nullptr}, set.spheres.size(), one_by_one([&set](std::size_t i) {
+                return sphere_box(set, i);
+            })};
+}
+
+TreeSource source_of(const ConeSet& set) {
+    return {{set.ends.data(), nullptr}, set.size(), one_by_one([&set](std::size_t i) {
+                return cone_box(set, i);
+            })};
+}
+
+std::shared_ptr<const PrimitiveTree> find_tree(const TreeList& known, const TreeSource& source) {
+    const auto found = std::find_if(known.begin(), known.end(), [&](const auto& tree) {
+        return tree->arrays == source.arrays && tree->count == source.count;
+    });
+    return found != known.end() ? *found : nullptr;
+}
+
+std::shared_ptr<const PrimitiveTree> build_tree(const TreeSource& source,
+                                                const BuildOptions& options, int threads) {
+    PrimitiveTree tree;
+    tree.arrays = source.arrays;
+    tree.count = source.count;
+    tree.bvh = widen(build_bvh(source.count, source.boxes,
+                               {.costs = kWideLeaves, .threads = threads, .stop = options.stop}));
+    return std::make_shared<const PrimitiveTree>(std::move(tree));
+}
+
+// Small trees side by side, each on one thread; then large ones, each on all.
+void build_missing(TreeList& trees, std::span<const TreeSource> sources,
+                   const BuildOptions& options) {
+    constexpr std::size_t kSmall = 1u << 14;
+    std::vector<std::size_t> small;
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        if (trees[i] == nullptr && sources[i].count <= kSmall) small.push_back(i);
     }
-    return std::make_shared<const PrimitiveTree>(build_tree(arrays, count, options, box_of));
+    parallel_for(small.size(), options.threads, options.stop, [&](std::size_t i) {
+        trees[small[i]] = build_tree(sources[small[i]], options, 1);
+    });
+    if (options.stop.stop_requested()) throw Cancelled();
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        if (trees[i] == nullptr) trees[i] = build_tree(sources[i], options, options.threads);
+    }
+}
+
+// One tree for each mesh or set of `things`.
+template <typename Things>
+TreeList build_list(const Things& things, const BuildOptions& options, const TreeList* known) {
+    std::vector<TreeSource> sources;
+    TreeList trees;
+    for (const auto& thing : things) {
+        sources.push_back(source_of(thing));
+        trees.push_back(known != nullptr ? find_tree(*known, sources.back()) : nullptr);
+    }
+    build_missing(trees, sources, options);
+    return trees;
 }
 
 }  // namespace
 
 SceneTrees build_trees(const Scene& scene, const BuildOptions& options, const SceneTrees* reuse) {
-    SceneTrees trees;
-    for (const Mesh& mesh : scene.meshes) {
-        trees.meshes.push_back(find_or_build(reuse != nullptr ? &reuse->meshes : nullptr,
-                                             {mesh.positions.data(), mesh.triangles.data()},
-                                             mesh.triangles.size(), options,
-                                             [&](std::size_t i) { return triangle_box(mesh, i); }));
-    }
-    for (const SphereSet& set : scene.sphere_sets) {
-        trees.sphere_sets.push_back(find_or_build(
-            reuse != nullptr ? &reuse->sphere_sets : nullptr, {set.spheres.data(), nullptr},
-            set.spheres.size(), options, [&](std::size_t i) { return sphere_box(set, i); }));
-    }
-    for (const ConeSet& set : scene.cone_sets) {
-        trees.cone_sets.push_back(find_or_build(reuse != nullptr ? &reuse->cone_sets : nullptr,
-                                                {set.ends.data(), nullptr}, set.size(), options,
-                                                [&](std::size_t i) { return cone_box(set, i); }));
-    }
-    return trees;
+    const auto known = [reuse](TreeList SceneTrees::*list) {
+        return reuse != nullptr ? &(reuse->*list) : nullptr;
+    };
+    return {build_list(scene.meshes, options, known(&SceneTrees::meshes)),
+            build_list(scene.sphere_sets, options, known(&SceneTrees::sphere_sets)),
+            build_list(scene.cone_sets, options, known(&SceneTrees::cone_sets))};
 }
 
 const PrimitiveTree* tree_of(const SceneTrees& trees, const Shape& shape) {

@@ -1,0 +1,76 @@
+// The boxes that a tree is built over, as builders move them about.
+#pragma once
+
+#include "tracer/accel/bvh.h"
+#include "tracer/accel/float4.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace raypick {
+
+// A box and whose it is: the index stands in the bits of min's fourth lane.
+struct BoxRef {
+    Float4 min;
+    Float4 max;
+
+    [[nodiscard]] std::uint32_t index() const {
+        return static_cast<std::uint32_t>(bits_of(min)[3]);
+    }
+    // Twice the centre, which saves a multiplication; the fourth lane means nothing.
+    [[nodiscard]] Float4 twice_centre() const { return min + max; }
+    [[nodiscard]] Box4 box() const { return {min, max}; }
+};
+
+inline BoxRef with_index(const BoxRef& ref, std::uint32_t index) {
+    Int4 bits = bits_of(ref.min);
+    bits[3] = static_cast<std::int32_t>(index);
+    return {from_bits(bits), ref.max};
+}
+
+inline BoxRef make_ref(const Bounds& box, std::uint32_t index) {
+    const Float4 min{box.min.x, box.min.y, box.min.z, 0.0f};
+    return with_index({min, Float4{box.max.x, box.max.y, box.max.z, 0.0f}}, index);
+}
+
+// Neither empty nor infinite nor NaN, of which the last two times 0 are a NaN.
+inline bool is_usable(const Bounds& box) {
+    const glm::vec3 zero = 0.0f * box.min + 0.0f * box.max;
+    return !box.empty() && zero.x + zero.y + zero.z == 0.0f;
+}
+
+// Of a range of refs: around the boxes, and around twice their centres.
+struct RefBounds {
+    Box4 boxes;
+    Box4 centres;
+
+    void extend(const BoxRef& ref) {
+        boxes.extend(ref.box());
+        centres.extend(ref.twice_centre());
+    }
+    void extend(const RefBounds& other) {
+        boxes.extend(other.boxes);
+        centres.extend(other.centres);
+    }
+};
+
+RefBounds measure(std::span<const BoxRef> refs);
+
+// Not a vector: its memory is touched first by the threads that fill it.
+struct RefArray {
+    std::unique_ptr<BoxRef[]> storage;
+    std::size_t count = 0;
+    RefBounds bounds;
+
+    [[nodiscard]] std::span<BoxRef> refs() const { return {storage.get(), count}; }
+};
+
+// Room for `count` refs, uninitialised and empty.
+RefArray allocate_refs(std::size_t count);
+
+// Refs of all usable boxes, in order. Throws Cancelled.
+RefArray make_refs(std::size_t count, const BoxSource& boxes, const BvhOptions& options);
+
+}  // namespace raypick
