@@ -183,7 +183,7 @@ TEST_P(BvhBuilder, EveryBoxIsInOneLeaf) {
     for (const std::size_t count : {1u, 2u, 3u, 4u, 5u, 7u, 9u, 33u, 1000u, 20000u, 60000u}) {
         SCOPED_TRACE(count);
         for (const Boxes& boxes : {scattered(count, count, 0.1), clustered(count, count)}) {
-            for (const LeafCosts& costs : {LeafCosts{}, kWideLeaves}) {
+            for (const LeafCosts& costs : {LeafCosts{}, kWideLeaves, kWideSurfaceLeaves}) {
                 TreeCheck check(GetParam()(boxes, {.costs = costs, .threads = 0, .stop = {}}),
                                 boxes);
                 EXPECT_EQ(check.complaint(), "");
@@ -425,6 +425,42 @@ TEST(BvhRefit, CanBeStopped) {
     std::stop_source stop;
     stop.request_stop();
     EXPECT_THROW(refit(bvh, source_of(boxes), 2, stop.get_token()), Cancelled);
+}
+
+struct CostCase {
+    Boxes boxes;
+    double before;  // cost of the tree of the builder that this one replaced
+};
+
+std::vector<CostCase> cost_cases() {
+    return {{scattered(100, 20000, 0.3), 530.708},  {scattered(101, 20000, 0.05), 93.538},
+            {scattered(102, 20000, 0.005), 60.450}, {clustered(103, 3000), 14.672},
+            {clustered(104, 20000), 69.199},        {clustered(105, 60000), 185.906}};
+}
+
+TEST(BvhCost, IsWhatFullBinningGives) {
+    for (const CostCase& c : cost_cases()) {
+        EXPECT_LT(sah_cost(build_bvh(c.boxes, 1, {}), {}), 1.025 * c.before);
+    }
+}
+
+TEST(BvhCost, OfTheFirstTreeIsNotMuchMore) {
+    for (const CostCase& c : cost_cases()) {
+        const Bvh bvh = build_bvh_fast(c.boxes.size(), source_of(c.boxes), {});
+        EXPECT_LT(sah_cost(bvh, {}), 1.15 * c.before);
+    }
+}
+
+TEST(BvhCost, IsLessWithALookAtEveryLeaf) {
+    for (const CostCase& c : cost_cases()) {
+        const auto cost = [&](const LeafCosts& costs) {
+            const Bvh bvh = build_bvh(c.boxes.size(), source_of(c.boxes),
+                                      {.costs = costs, .threads = 1, .stop = {}});
+            return sah_cost(bvh, kWideLeaves);
+        };
+        EXPECT_LE(cost(kWideLeaves), cost(kWideSurfaceLeaves));
+        EXPECT_LE(cost(kWideLeaves), 1.05 * cost({}));
+    }
 }
 
 // Two unit cubes, two apart: half areas of 3 each, and of 9 for the root, which is 4 x 1 x 1.

@@ -7,6 +7,10 @@
 #include <array>
 #include <vector>
 
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
 namespace raypick {
 
 namespace {
@@ -46,7 +50,15 @@ RefBounds measure(std::span<const BoxRef> refs) {
 
 RefArray allocate_refs(std::size_t count) {
     RefArray array;
-    array.storage = std::make_unique_for_overwrite<BoxRef[]>(count);
+    // Having a small page takes a tenth of the time in which the refs on it are made a tree of.
+    constexpr std::size_t kLargePage = std::size_t{1} << 21;
+    const bool large = count * sizeof(BoxRef) >= 2 * kLargePage;
+    const std::align_val_t alignment{large ? kLargePage : alignof(BoxRef)};
+    void* const memory = ::operator new(count * sizeof(BoxRef), alignment);
+    array.storage = {static_cast<BoxRef*>(memory), FreeRefs{alignment}};
+#ifdef MADV_HUGEPAGE
+    if (large) madvise(memory, count * sizeof(BoxRef), MADV_HUGEPAGE);  // no harm if it fails
+#endif
     return array;
 }
 

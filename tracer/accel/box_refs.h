@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <new>
 #include <span>
 
 namespace raypick {
@@ -58,16 +59,22 @@ struct RefBounds {
 
 RefBounds measure(std::span<const BoxRef> refs);
 
-// Not a vector: its memory is touched first by the threads that fill it.
+struct FreeRefs {
+    std::align_val_t alignment{alignof(BoxRef)};
+    void operator()(BoxRef* refs) const { ::operator delete(refs, alignment); }
+};
+
+// Not a vector: its memory is touched first by the threads that fill it, and large pages are asked
+// for where there are any.
 struct RefArray {
-    std::unique_ptr<BoxRef[]> storage;
+    std::unique_ptr<BoxRef[], FreeRefs> storage;
     std::size_t count = 0;
     RefBounds bounds;
 
     [[nodiscard]] std::span<BoxRef> refs() const { return {storage.get(), count}; }
 };
 
-// Room for `count` refs, uninitialised and empty.
+// Room for `count` refs, uninitialised and empty. Throws std::bad_alloc.
 RefArray allocate_refs(std::size_t count);
 
 // Refs of all usable boxes, in order. Throws Cancelled.

@@ -44,6 +44,7 @@ struct TreeSource {
     std::array<const void*, 2> arrays{};
     std::size_t count = 0;
     BoxSource boxes;
+    LeafCosts costs;
 };
 
 template <typename BoxOf>
@@ -57,19 +58,22 @@ BoxSource one_by_one(const BoxOf& box_of) {
 TreeSource source_of(const Mesh& mesh) {
     return {{mesh.positions.data(), mesh.triangles.data()},
             mesh.triangles.size(),
-            one_by_one([&mesh](std::size_t i) { return triangle_box(mesh, i); })};
+            one_by_one([&mesh](std::size_t i) { return triangle_box(mesh, i); }),
+            kWideSurfaceLeaves};
 }
 
 TreeSource source_of(const SphereSet& set) {
-    return {{set.spheres.data(), nullptr}, set.spheres.size(), one_by_one([&set](std::size_t i) {
-                return sphere_box(set, i);
-            })};
+    return {{set.spheres.data(), nullptr},
+            set.spheres.size(),
+            one_by_one([&set](std::size_t i) { return sphere_box(set, i); }),
+            kWideLeaves};
 }
 
 TreeSource source_of(const ConeSet& set) {
-    return {{set.ends.data(), nullptr}, set.size(), one_by_one([&set](std::size_t i) {
-                return cone_box(set, i);
-            })};
+    return {{set.ends.data(), nullptr},
+            set.size(),
+            one_by_one([&set](std::size_t i) { return cone_box(set, i); }),
+            kWideLeaves};
 }
 
 std::shared_ptr<const PrimitiveTree> find_tree(const TreeList& known, const TreeSource& source) {
@@ -85,7 +89,7 @@ std::shared_ptr<const PrimitiveTree> build_tree(const TreeSource& source,
     tree.arrays = source.arrays;
     tree.count = source.count;
     tree.bvh = widen(build_bvh(source.count, source.boxes,
-                               {.costs = kWideLeaves, .threads = threads, .stop = options.stop}));
+                               {.costs = source.costs, .threads = threads, .stop = options.stop}));
     return std::make_shared<const PrimitiveTree>(std::move(tree));
 }
 
