@@ -93,9 +93,14 @@ float index_of(const Scene& scene, MaterialId medium) {
 struct Path {
     Interior interior;  // what it goes through
     RayCone cone;
-    float weight = 1.0f;  // the most that it can add to its pixel
-    int depth = 1;        // an eye ray has 1
+    float weight = 1.0f;     // the most that it can add to its pixel
+    int depth = 1;           // an eye ray has 1
+    std::uint64_t seed = 0;  // of what is random at its end
 };
+
+// What a ray's seed is derived by from that of the ray before: randomness depends on the way to a
+// point, not on which rays were followed before it.
+enum Branch : std::uint64_t { kTransmitted, kMirrored, kStraight, kLights };
 
 // A surface with the glass on both sides of it, as one ray meets it.
 struct Boundary {
@@ -116,20 +121,18 @@ struct Split {
 class Tracer {
 public:
     Tracer(const Accel& accel, std::span<const Light> lights, const RenderSettings& settings,
-           std::uint64_t seed, RayCounts& counts, const std::stop_token& stop)
-        : accel_(accel),
-          scene_(accel.scene()),
-          lights_(lights),
-          settings_(settings),
-          random_(seed),
-          counts_(counts),
-          stop_(stop) {}
+           RayCounts& counts, const std::stop_token& stop)
+        : accel_(accel), scene_(accel.scene()), settings_(settings), counts_(counts), stop_(stop) {
+        for (const Light& light : lights)
+            lights_.push_back(prepared(light));
+    }
 
     TracedRay eye_ray(const EyeRay& eye) {
         ++counts_.eye;
         TracedRay result;
         Path path;
         path.cone = eye.cone;
+        path.seed = eye.seed;
         const auto hit = accel_.intersect(eye.ray);
         if (!hit) {
             result.colour = environment_colour(scene_, eye.ray.direction, eye.cone.spread);
@@ -210,7 +213,7 @@ private:
         const Split split = split_at(point, boundary);
         if (settings_.refractions && point.kind.transmits() && split.through) {
             colour += transmitted(point, *split.through, opacity * split.transmitted,
-                                  boundary.crossing.after, path);
+                                  boundary.crossing.after, path, kTransmitted);
         }
         const bool mirrors =
             settings_.reflections && (point.kind.reflects() || point.kind.transmits());
@@ -218,8 +221,8 @@ private:
             colour += mirrored(point, opacity * split.mirrored, path);
         }
         if (opacity < 1.0f && settings_.refractions) {
-            colour +=
-                transmitted(point, point.incoming, glm::vec3(1.0f - opacity), path.interior, path);
+            colour += transmitted(point, point.incoming, glm::vec3(1.0f - opacity), path.interior,
+                                  path, kStraight);
         }
         return colour;
     }
@@ -262,17 +265,19 @@ private:
 
     // A ray that leaves the point, with its share of the pixel.
     [[nodiscard]] static Path onwards(const Path& path, const glm::vec3& share,
-                                      const Interior& interior) {
+                                      const Interior& interior, Branch branch) {
         Path next = path;
         next.interior = interior;
         next.weight *= largest(share);
         ++next.depth;
+        next.seed = RandomSequence::derive(path.seed, branch);
         return next;
     }
 
     glm::vec3 transmitted(const ShadingPoint& point, const glm::vec3& direction,
-                          const glm::vec3& share, const Interior& interior, const Path& path) {
-        const Path next = onwards(path, share, interior);
+                          const glm::vec3& share, const Interior& interior, const Path& path,
+                          Branch branch) {
+        const Path next = onwards(path, share, interior, branch);
         if (!worth_a_ray(next)) return glm::vec3(0.0f);
         ++counts_.refraction;
         ++counts_.refraction_at[level(next)];
@@ -280,7 +285,7 @@ private:
     }
 
     glm::vec3 mirrored(const ShadingPoint& point, const glm::vec3& share, const Path& path) {
-        const Path next = onwards(path, share, path.interior);
+        const Path next = onwards(path, share, path.interior, kMirrored);
         if (!worth_a_ray(next)) return glm::vec3(0.0f);
         ++counts_.reflection;
         ++counts_.reflection_at[level(next)];
@@ -300,11 +305,11 @@ private:
 
     glm::vec3 local(const ShadingPoint& point, const Path& path) {
         glm::vec3 colour = point.material.emissive + point.material.ambient * scene_.ambient;
-        for (const Light& light : lights_) {
-            const int count = sample_count(light);
-            for (int i = 0; i < count; ++i) {
+        for (std::size_t l = 0; l < lights_.size(); ++l) {
+            const std::uint64_t seed = RandomSequence::derive(path.seed, kLights + l);
+            for (int i = 0; i < lights_[l].count(); ++i) {
                 colour +=
-                    lit_by(point, path, light_sample(light, point.surface.position, i, random_));
+                    lit_by(point, path, light_sample(lights_[l], point.surface.position, i, seed));
             }
         }
         return colour;
@@ -392,9 +397,8 @@ private:
 
     const Accel& accel_;
     const Scene& scene_;
-    std::span<const Light> lights_;
+    std::vector<PreparedLight> lights_;
     const RenderSettings& settings_;
-    RandomSequence random_;
     RayCounts& counts_;
     const std::stop_token& stop_;
 };
@@ -418,7 +422,7 @@ RayCounts& RayCounts::operator+=(const RayCounts& other) {
 
 TracedRay trace(const Accel& accel, std::span<const Light> lights, const RenderSettings& settings,
                 const EyeRay& eye, RayCounts& counts, const std::stop_token& stop) {
-    return Tracer(accel, lights, settings, eye.seed, counts, stop).eye_ray(eye);
+    return Tracer(accel, lights, settings, counts, stop).eye_ray(eye);
 }
 
 TracedRay trace(const Accel& accel, std::span<const Light> lights, const RenderSettings& settings,
