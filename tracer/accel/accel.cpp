@@ -103,6 +103,9 @@ const Scene& Accel::scene() const {
 std::shared_ptr<const Scene> Accel::shared_scene() const {
     return state_->scene;
 }
+const Transform& Accel::object_from_world(std::size_t object_index) const {
+    return state_->instances[object_index].object_from_world;
+}
 const Bounds& Accel::bounds() const {
     return state_->bounds;
 }

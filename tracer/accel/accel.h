@@ -60,6 +60,8 @@ public:
 
     [[nodiscard]] const Scene& scene() const;
     [[nodiscard]] std::shared_ptr<const Scene> shared_scene() const;
+    // The inverse of an object's transform, by its place in scene().objects.
+    [[nodiscard]] const Transform& object_from_world(std::size_t object_index) const;
     // Of all finite objects.
     [[nodiscard]] const Bounds& bounds() const;
     [[nodiscard]] AccelStats stats() const;

@@ -1,7 +1,6 @@
 #include "tracer/accel/local_point.h"
 
 #include "tracer/geometry/axis_frame.h"
-#include "tracer/geometry/triangle_test.h"
 
 #include <glm/geometric.hpp>
 
@@ -22,6 +21,10 @@ double largest(const glm::dvec3& v) {
 
 glm::dvec3 at(const ObjectRay& ray, double t) {
     return ray.origin + t * ray.direction;
+}
+
+double finite_or(double t, float known) {
+    return std::isfinite(t) ? t : static_cast<double>(known);
 }
 
 // What the shape's intersection found where it gave this hit: a Hit has t in float only. `parts`:
@@ -47,31 +50,42 @@ ShapeHit found_again(const AnyShape& shape, const ObjectRay& ray, const Hit& hit
 // How near to the rim of a piece of surface points may lie.
 class Rim {
 public:
-    // `width` in scene space.
-    Rim(const glm::dmat3& world_from_object, double width)
-        : world_from_object_(world_from_object), width_(width) {}
+    explicit Rim(const PointNeeds& needs) : needs_(needs) {}
 
     // The rim's share of a way across the piece, at most a quarter.
     [[nodiscard]] double share(const glm::dvec3& across) const {
-        return share(glm::length(world_from_object_ * across));
+        return share(glm::length(in_scene(across)));
     }
     // The same of the height over `edge` of a piece that reaches by `across` from it.
     [[nodiscard]] double share(const glm::dvec3& across, const glm::dvec3& edge) const {
-        const glm::dvec3 base = world_from_object_ * edge;
-        const double area = glm::length(glm::cross(world_from_object_ * across, base));
+        const glm::dvec3 base = in_scene(edge);
+        const double area = glm::length(glm::cross(in_scene(across), base));
         return share(area / glm::length(base));
     }
     [[nodiscard]] bool holds(const glm::dvec3& way) const {
-        return glm::length(world_from_object_ * way) < width_;
+        return glm::length(in_scene(way)) < needs_.rim;
+    }
+    // True if a point of a triangle whose least weight this is lies within no rim of its edges: its
+    // distance to each is at least that weight's share of the least height. Quick to see for most.
+    [[nodiscard]] bool is_far(double least_weight, const glm::dvec3& edge_b,
+                              const glm::dvec3& edge_c) const {
+        const glm::dvec3 b = in_scene(edge_b);
+        const glm::dvec3 c = in_scene(edge_c);
+        const glm::dvec3 area = glm::cross(b, c);
+        const double longest = std::max({glm::dot(b, b), glm::dot(c, c), glm::dot(c - b, c - b)});
+        return least_weight > 0.0 && least_weight * least_weight * glm::dot(area, area) >
+                                         1.0001 * needs_.rim * needs_.rim * longest;
     }
 
 private:
     [[nodiscard]] double share(double length) const {
-        return length > 4.0 * width_ ? width_ / length : 0.25;
+        return length > 4.0 * needs_.rim ? needs_.rim / length : 0.25;
+    }
+    [[nodiscard]] glm::dvec3 in_scene(const glm::dvec3& v) const {
+        return needs_.world_from_object != nullptr ? *needs_.world_from_object * v : v;
     }
 
-    glm::dmat3 world_from_object_;
-    double width_;
+    const PointNeeds& needs_;
 };
 
 // Around an axis: the unit vectors away from it and along the turn. On the axis: the frame's own.
@@ -99,10 +113,24 @@ LocalPoint flat_point(const glm::dvec3& position, const glm::dvec3& normal, doub
     return point;
 }
 
-LocalPoint sphere_point(const Sphere& sphere, const ShapeHit& hit, const ObjectRay& ray) {
-    const glm::dvec3 n = glm::normalize(at(ray, hit.t) - sphere.centre);
+// The t, in double, at which the ray meets a sphere nearest to this one.
+double sphere_t(const Sphere& sphere, const ObjectRay& ray, double t) {
+    const double a = glm::dot(ray.direction, ray.direction);
+    const glm::dvec3 f = ray.origin - sphere.centre;
+    const double middle = -glm::dot(f, ray.direction) / a;
+    const glm::dvec3 closest = f + middle * ray.direction;
+    const double squared = (sphere.radius * sphere.radius - glm::dot(closest, closest)) / a;
+    if (!(squared > 0.0)) return t;
+    return middle + std::copysign(std::sqrt(squared), t - middle);
+}
+
+LocalPoint sphere_point(const Sphere& sphere, const Hit& hit, const ObjectRay& ray,
+                        bool derivatives) {
+    const double t = sphere_t(sphere, ray, static_cast<double>(hit.t));
+    const glm::dvec3 n = glm::normalize(at(ray, t) - sphere.centre);
     LocalPoint point =
         flat_point(sphere.centre + sphere.radius * n, n, largest(sphere.centre) + sphere.radius);
+    if (!derivatives) return point;
     const double from_axis = std::hypot(n.x, n.z);
     if (!(from_axis > 1e-9)) return point;  // the poles have no longitude
     point.dpdu = kTurn * sphere.radius * glm::dvec3(-n.z, 0.0, n.x);
@@ -187,33 +215,51 @@ glm::dvec3 off_the_edges(const glm::dvec3& weights, const glm::dvec3& margin) {
     return margin + free / (room.x + room.y + room.z) * room;
 }
 
+// The weights of b and c where the ray meets the triangle's plane, in double: a Hit has them in
+// float. Source: Moeller, Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", JGT 2(1),
+// 1997.
+glm::dvec2 exact_weights(const ObjectRay& ray, const Hit& hit, const glm::dvec3& a,
+                         const glm::dvec3& edge_b, const glm::dvec3& edge_c,
+                         const glm::dvec3& normal) {
+    const glm::dvec3 q = glm::cross(ray.origin - a, ray.direction);
+    const double scale = -1.0 / glm::dot(normal, ray.direction);
+    const glm::dvec2 uv{glm::dot(q, edge_c) * scale, -glm::dot(q, edge_b) * scale};
+    // A ray along the plane gives anything.
+    const glm::dvec2 known(hit.uv);
+    const glm::dvec2 gap = glm::abs(uv - known);
+    return gap.x < 1e-3 && gap.y < 1e-3 ? uv : known;
+}
+
 // The point a u v of the plane through the corners, exact to double rounding.
 LocalPoint triangle_point(const ObjectRay& ray, const Hit& hit, const glm::dvec3& a,
                           const glm::dvec3& b, const glm::dvec3& c, const Rim& rim) {
-    glm::dvec2 uv(hit.uv);
-    if (const auto exact = intersect_triangle(shear(ray), a, b, c)) uv = {exact->u, exact->v};
-    const glm::dvec3 weights =
-        off_the_edges({1.0 - uv.x - uv.y, uv.x, uv.y},
-                      {rim.share(a - b, c - b), rim.share(b - c, a - c), rim.share(c - a, b - a)});
-    LocalPoint point =
-        flat_point(weights.x * a + weights.y * b + weights.z * c, glm::cross(b - a, c - a),
-                   std::max({largest(a), largest(b), largest(c)}));
-    point.dpdu = b - a;
-    point.dpdv = c - a;
+    const glm::dvec3 edge_b = b - a;
+    const glm::dvec3 edge_c = c - a;
+    const glm::dvec3 normal = glm::cross(edge_b, edge_c);
+    const glm::dvec2 uv = exact_weights(ray, hit, a, edge_b, edge_c, normal);
+    glm::dvec3 weights{1.0 - uv.x - uv.y, uv.x, uv.y};
+    if (!rim.is_far(std::min({weights.x, weights.y, weights.z}), edge_b, edge_c)) {
+        weights = off_the_edges(weights, {rim.share(edge_b, c - b), rim.share(b - c, edge_c),
+                                          rim.share(edge_c, edge_b)});
+    }
+    LocalPoint point = flat_point(weights.x * a + weights.y * b + weights.z * c, normal,
+                                  std::max({largest(a), largest(b), largest(c)}));
+    point.dpdu = edge_b;
+    point.dpdv = edge_c;
     return point;
 }
 
-// Interpolated where the mesh has normals, turned to the side of the geometric normal.
-glm::dvec3 mesh_shading_normal(const Mesh& mesh, const glm::uvec3& corner, const Hit& hit,
-                               const glm::dvec3& geometric_normal) {
-    if (mesh.normals.empty()) return geometric_normal;
+// Interpolated, turned to the side of the geometric normal.
+void take_mesh_normal(const Mesh& mesh, const glm::uvec3& corner, const Hit& hit,
+                      LocalPoint& point) {
     const auto u = static_cast<double>(hit.uv.x);
     const auto v = static_cast<double>(hit.uv.y);
     const glm::dvec3 normal = (1.0 - u - v) * glm::dvec3(mesh.normals[corner.x]) +
                               u * glm::dvec3(mesh.normals[corner.y]) +
                               v * glm::dvec3(mesh.normals[corner.z]);
-    if (!(glm::dot(normal, normal) > 1e-12)) return geometric_normal;
-    return glm::dot(normal, geometric_normal) < 0.0 ? -normal : normal;
+    if (!(glm::dot(normal, normal) > 1e-12)) return;
+    point.shading_normal = glm::dot(normal, point.geometric_normal) < 0.0 ? -normal : normal;
+    point.smooth = true;
 }
 
 // From derivatives by the weights of the second and third corner to those by the mesh's uv.
@@ -237,14 +283,16 @@ struct LocalPointOf {
     const ObjectRay& ray;
     const Hit& hit;
     Rim rim;
+    bool derivatives;
 
     LocalPoint operator()(const Sphere& sphere) const {
-        return sphere_point(sphere, found_again(sphere, ray, hit, true), ray);
+        return sphere_point(sphere, hit, ray, derivatives);
     }
 
     LocalPoint operator()(const Plane& plane) const {
-        const glm::dvec3 p = at(ray, found_again(plane, ray, hit, true).t);
         const glm::dvec3 n = plane.normal;
+        const double above = glm::dot(n, ray.origin) + plane.d;
+        const glm::dvec3 p = at(ray, finite_or(-above / glm::dot(n, ray.direction), hit.t));
         const double height = glm::dot(n, p) + plane.d;
         LocalPoint point = flat_point(p - n * (height / glm::dot(n, n)), n, largest(p));
         // u and v are the coordinates other than the one that the normal is longest along.
@@ -267,9 +315,10 @@ struct LocalPointOf {
     LocalPoint operator()(const Box& box) const {
         const auto axis = static_cast<int>(hit.primitive / 2);
         const bool upper = hit.primitive % 2 != 0;
-        const glm::dvec3 p = at(ray, found_again(box, ray, hit, true).t);
         LocalPoint point;
         point.position[axis] = upper ? box.max[axis] : box.min[axis];
+        const double way = (point.position[axis] - ray.origin[axis]) / ray.direction[axis];
+        const glm::dvec3 p = at(ray, finite_or(way, hit.t));
         point.geometric_normal[axis] = upper ? 1.0 : -1.0;
         point.shading_normal = point.geometric_normal;
         point.magnitude = std::max(largest(box.min), largest(box.max));
@@ -319,7 +368,7 @@ struct LocalPointOf {
 
     LocalPoint operator()(const SphereSetInstance& instance) const {
         const Sphere sphere = sphere_of(scene.sphere_sets[instance.set], hit.primitive);
-        return sphere_point(sphere, found_again(sphere, ray, hit, false), ray);
+        return sphere_point(sphere, hit, ray, derivatives);
     }
 
     LocalPoint operator()(const ConeSetInstance& instance) const {
@@ -333,8 +382,8 @@ struct LocalPointOf {
         LocalPoint point = triangle_point(ray, hit, glm::dvec3(mesh.positions[corner.x]),
                                           glm::dvec3(mesh.positions[corner.y]),
                                           glm::dvec3(mesh.positions[corner.z]), rim);
-        point.shading_normal = mesh_shading_normal(mesh, corner, hit, point.geometric_normal);
-        take_mesh_uv(mesh, corner, point);
+        if (!mesh.normals.empty()) take_mesh_normal(mesh, corner, hit, point);
+        if (derivatives) take_mesh_uv(mesh, corner, point);
         return point;
     }
 };
@@ -342,9 +391,8 @@ struct LocalPointOf {
 }  // namespace
 
 LocalPoint local_point(const Scene& scene, const Object& object, const ObjectRay& ray,
-                       const Hit& hit, double rim) {
-    const Rim off{object.world_from_object.linear, rim};
-    return std::visit(LocalPointOf{scene, ray, hit, off}, object.shape);
+                       const Hit& hit, const PointNeeds& needs) {
+    return std::visit(LocalPointOf{scene, ray, hit, Rim(needs), needs.derivatives}, object.shape);
 }
 
 }  // namespace raypick

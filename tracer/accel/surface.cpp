@@ -5,7 +5,9 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <variant>
 
@@ -13,20 +15,59 @@ namespace raypick {
 
 namespace {
 
-// Bound on what rounding did to the point: to float when it was stored, and to double (with room
-// to spare) on the way from the ray through the object's space and back. A secondary ray's own
-// intersection goes the same way, and must find the surface behind it.
-glm::dvec3 rounding_bound(const Transform& world_from_object, const Transform& object_from_world,
-                          double magnitude, const glm::dvec3& position) {
-    const auto absolute = [](const glm::dmat3& m) {
-        return glm::dmat3(glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2]));
-    };
-    const glm::dvec3 inside = absolute(object_from_world.linear) * glm::abs(position) +
-                              glm::abs(object_from_world.translation) + magnitude;
-    const glm::dvec3 reach =
-        absolute(world_from_object.linear) * inside + glm::abs(world_from_object.translation);
-    return glm::abs(position) * 0x1p-24 + reach * 0x1p-47;
-}
+// The way of points and vectors between an object's space and the scene's. Where both are the same
+// nothing is multiplied.
+class Placement {
+public:
+    Placement(const Transform& world_from_object, const Transform& object_from_world)
+        : world_from_object_(world_from_object),
+          object_from_world_(object_from_world),
+          moves_(!object_from_world.is_identity()) {}
+
+    [[nodiscard]] ObjectRay object_ray(const Ray& ray) const {
+        const glm::dvec3 origin(ray.origin);
+        const glm::dvec3 direction(ray.direction);
+        if (!moves_) return {origin, direction};
+        return {object_from_world_.point(origin), object_from_world_.vector(direction)};
+    }
+    [[nodiscard]] glm::dvec3 world_point(const glm::dvec3& p) const {
+        return moves_ ? world_from_object_.point(p) : p;
+    }
+    [[nodiscard]] glm::dvec3 world_vector(const glm::dvec3& v) const {
+        return moves_ ? world_from_object_.vector(v) : v;
+    }
+    [[nodiscard]] glm::dvec3 world_normal(const glm::dvec3& n) const {
+        return moves_ ? raypick::world_normal(object_from_world_, n) : glm::normalize(n);
+    }
+    // nullptr where nothing moves.
+    [[nodiscard]] const glm::dmat3* linear() const {
+        return moves_ ? &world_from_object_.linear : nullptr;
+    }
+
+    // Bound on what rounding did to the point: to float when it was stored, and to double (with
+    // room to spare) on the way from the ray through the object's space and back. A secondary ray's
+    // own intersection goes the same way, and must find the surface behind it.
+    [[nodiscard]] glm::dvec3 rounding_bound(double magnitude, const glm::dvec3& position) const {
+        const glm::dvec3 size = glm::abs(position);
+        return size * 0x1p-24 + reach(magnitude, size) * 0x1p-47;
+    }
+
+private:
+    [[nodiscard]] glm::dvec3 reach(double magnitude, const glm::dvec3& size) const {
+        if (!moves_) return size + magnitude;
+        const auto absolute = [](const glm::dmat3& m) {
+            return glm::dmat3(glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2]));
+        };
+        const glm::dvec3 inside = absolute(object_from_world_.linear) * size +
+                                  glm::abs(object_from_world_.translation) + magnitude;
+        return absolute(world_from_object_.linear) * inside +
+               glm::abs(world_from_object_.translation);
+    }
+
+    const Transform& world_from_object_;
+    const Transform& object_from_world_;
+    bool moves_;
+};
 
 // A ray leaves a wall by up to three such bounds. This many along the wall keep it on the right
 // side of another one that meets it at a sharp angle, and are less than can be seen.
@@ -34,6 +75,16 @@ constexpr double kRimInBounds = 64.0;
 
 double largest(const glm::dvec3& v) {
     return std::max({v.x, v.y, v.z});
+}
+
+// std::nextafter towards an infinity, which takes a call and looks at all cases.
+float next_float(float x, bool upwards) {
+    if (!std::isfinite(x) || x == 0.0f) {
+        const float end = std::numeric_limits<float>::infinity();
+        return std::nextafter(x, upwards ? end : -end);
+    }
+    const auto bits = std::bit_cast<std::uint32_t>(x);
+    return std::bit_cast<float>((x > 0.0f) == upwards ? bits + 1 : bits - 1);
 }
 
 // The weights of tangent vectors p and q that make up `vector`, which lies in their plane.
@@ -66,30 +117,36 @@ private:
 
 SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
     const Object& object = scene.objects[object_index(scene, hit.object)];
-    const Transform& world_from_object = object.world_from_object;
-    const Transform object_from_world = inverse(world_from_object).value_or(Transform{});
-    const ObjectRay local_ray{object_from_world.point(glm::dvec3(ray.origin)),
-                              object_from_world.vector(glm::dvec3(ray.direction))};
+    const Transform object_from_world = inverse(object.world_from_object).value_or(Transform{});
+    return surface_point(
+        scene, {object, object_from_world, material_id(scene, object, hit.primitive)}, ray, hit);
+}
+
+SurfacePoint surface_point(const Scene& scene, const HitObject& at, const Ray& ray,
+                           const Hit& hit) {
+    const Placement place(at.object.world_from_object, at.object_from_world);
     const glm::dvec3 met =
         glm::dvec3(ray.origin) + static_cast<double>(hit.t) * glm::dvec3(ray.direction);
-    const double rim =
-        kRimInBounds * largest(rounding_bound(world_from_object, object_from_world, 0.0, met));
-    const LocalPoint local = local_point(scene, object, local_ray, hit, rim);
-    const glm::dvec3 position = world_from_object.point(local.position);
+    const double rim = kRimInBounds * largest(place.rounding_bound(0.0, met));
+    const LocalPoint local = local_point(scene, at.object, place.object_ray(ray), hit,
+                                         {place.linear(), rim, at.textured});
+    const glm::dvec3 position = place.world_point(local.position);
 
     SurfacePoint surface;
     surface.position = glm::vec3(position);
-    surface.position_error =
-        glm::vec3(rounding_bound(world_from_object, object_from_world, local.magnitude, position)) +
-        std::numeric_limits<float>::min();
-    surface.geometric_normal = glm::vec3(world_normal(object_from_world, local.geometric_normal));
-    surface.shading_normal = glm::vec3(world_normal(object_from_world, local.shading_normal));
+    surface.position_error = glm::vec3(place.rounding_bound(local.magnitude, position)) +
+                             std::numeric_limits<float>::min();
+    surface.geometric_normal = glm::vec3(place.world_normal(local.geometric_normal));
+    surface.shading_normal = local.smooth ? glm::vec3(place.world_normal(local.shading_normal))
+                                          : surface.geometric_normal;
     surface.uv = hit.uv;
-    surface.texture_uv = texture_uv(scene, object, hit);
-    surface.dpdu = glm::vec3(world_from_object.vector(local.dpdu));
-    surface.dpdv = glm::vec3(world_from_object.vector(local.dpdv));
+    if (at.textured) {
+        surface.texture_uv = texture_uv(scene, at.object, hit);
+        surface.dpdu = glm::vec3(place.world_vector(local.dpdu));
+        surface.dpdv = glm::vec3(place.world_vector(local.dpdv));
+    }
     surface.front_face = hit.front_face;
-    surface.material = material_id(scene, object, hit.primitive);
+    surface.material = at.material;
     return surface;
 }
 
@@ -101,9 +158,7 @@ glm::vec3 offset_origin(const SurfacePoint& point, const glm::vec3& direction) {
     const float distance = 2.0f * glm::dot(glm::abs(normal), point.position_error);
     glm::vec3 origin = point.position + distance * normal;
     for (int axis = 0; axis < 3; ++axis) {
-        if (normal[axis] == 0.0f) continue;
-        const float outwards = std::copysign(std::numeric_limits<float>::infinity(), normal[axis]);
-        origin[axis] = std::nextafter(origin[axis], outwards);
+        if (normal[axis] != 0.0f) origin[axis] = next_float(origin[axis], normal[axis] > 0.0f);
     }
     return origin;
 }

@@ -23,6 +23,16 @@ struct SurfacePoint {
 // `hit` must come from this ray and this scene.
 SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit);
 
+// What is known of a hit's object already.
+struct HitObject {
+    const Object& object;
+    const Transform& object_from_world;  // the inverse of the object's transform
+    MaterialId material = kNoMaterial;   // of the hit's primitive
+    bool textured = true;                // false: texture_uv, dpdu and dpdv may be left 0
+};
+// The same without looking it up again.
+SurfacePoint surface_point(const Scene& scene, const HitObject& at, const Ray& ray, const Hit& hit);
+
 // Origin for a ray that leaves the surface on the side that `direction` points to: moved off by the
 // point's own error bound and no more. Source: Pharr, Jakob, Humphreys, Physically Based Rendering,
 // 4th ed. 2023, section 6.8.

@@ -52,19 +52,25 @@ float wrapped(float x, Wrap wrap) {
     return x - std::floor(x);
 }
 
+// i in [-n, 2n) to [0, n). A division would take longer than all else that finds a texel.
+int in_period(int i, int n) {
+    if (i < 0) return i + n;
+    return i < n ? i : i - n;
+}
+
 // Texel i of n; i is at most one texel outside what wrapped() leaves.
 int wrapped(int i, int n, Wrap wrap) {
     switch (wrap) {
         case Wrap::clamp:
             return std::clamp(i, 0, n - 1);
         case Wrap::mirror: {
-            const int in_period = (i + 2 * n) % (2 * n);
-            return in_period < n ? in_period : 2 * n - 1 - in_period;
+            const int turned = in_period(i, 2 * n);
+            return turned < n ? turned : 2 * n - 1 - turned;
         }
         case Wrap::repeat:
             break;
     }
-    return (i + n) % n;
+    return in_period(i, n);
 }
 
 class ImageSampler {
@@ -108,7 +114,8 @@ private:
         const TextureLevel& level = pixels_.levels.front();
         const float x = wrapped(t.x, map_.wrap_u) * static_cast<float>(level.cols);
         const float y = (1.0f - wrapped(t.y, map_.wrap_v)) * static_cast<float>(level.rows);
-        return texel(level, static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)));
+        return value(row_of(level, static_cast<int>(std::floor(
+                                       y)))[col_of(level, static_cast<int>(std::floor(x)))]);
     }
 
     [[nodiscard]] glm::vec4 bilinear(const glm::vec2& t, int number) const {
@@ -118,20 +125,26 @@ private:
         const float y = (1.0f - wrapped(t.y, map_.wrap_v)) * static_cast<float>(level.rows) - 0.5f;
         const float left = std::floor(x);
         const float top = std::floor(y);
-        const int col = static_cast<int>(left);
-        const int row = static_cast<int>(top);
         const float right = x - left;
-        return glm::mix(glm::mix(texel(level, col, row), texel(level, col + 1, row), right),
-                        glm::mix(texel(level, col, row + 1), texel(level, col + 1, row + 1), right),
-                        y - top);
+        const std::size_t col = col_of(level, static_cast<int>(left));
+        const std::size_t next_col = col_of(level, static_cast<int>(left) + 1);
+        const glm::u8vec4* row = row_of(level, static_cast<int>(top));
+        const glm::u8vec4* next_row = row_of(level, static_cast<int>(top) + 1);
+        return glm::mix(glm::mix(value(row[col]), value(row[next_col]), right),
+                        glm::mix(value(next_row[col]), value(next_row[next_col]), right), y - top);
     }
 
     // Mirrored v is turned round by wrapped(): rows count from v = 1 downwards there.
-    [[nodiscard]] glm::vec4 texel(const TextureLevel& level, int col, int row) const {
-        const auto place = static_cast<std::size_t>(wrapped(row, level.rows, map_.wrap_v)) *
-                               static_cast<std::size_t>(level.cols) +
-                           static_cast<std::size_t>(wrapped(col, level.cols, map_.wrap_u));
-        const glm::u8vec4& c = pixels_.texels[level.first + place];
+    [[nodiscard]] const glm::u8vec4* row_of(const TextureLevel& level, int row) const {
+        return &pixels_.texels[level.first] +
+               static_cast<std::size_t>(wrapped(row, level.rows, map_.wrap_v)) *
+                   static_cast<std::size_t>(level.cols);
+    }
+    [[nodiscard]] std::size_t col_of(const TextureLevel& level, int col) const {
+        return static_cast<std::size_t>(wrapped(col, level.cols, map_.wrap_u));
+    }
+
+    [[nodiscard]] glm::vec4 value(const glm::u8vec4& c) const {
         if (pixels_.coding == TexelCoding::linear) return glm::vec4(c) * (1.0f / 255.0f);
         return {values_[c.x], values_[c.y], values_[c.z],
                 static_cast<float>(c.w) * (1.0f / 255.0f)};
