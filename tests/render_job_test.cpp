@@ -3,6 +3,7 @@
 
 #include "tests/tracer_scenes.h"
 #include "tracer/error.h"
+#include "tracer/shade/trace.h"
 
 #include <gtest/gtest.h>
 

@@ -7,6 +7,7 @@
 #include "tracer/render/render_job.h"
 #include "tracer/render/sampling_pattern.h"
 #include "tracer/render/tiles.h"
+#include "tracer/shade/trace.h"
 
 #include <gtest/gtest.h>
 

@@ -29,6 +29,7 @@ raypick_test(image_test LABELS cpu LIBS OpenEXR::OpenEXR PkgConfig::stb)
 # These open model files.
 if(TARGET raypick_io)
     raypick_test(accel_models_test LABELS data)
+    raypick_test(batch_tracer_test LABELS cpu)
     raypick_test(spd_oracle_test LABELS oracle data SOURCES spd_scenes.cpp TIMEOUT 600)
     raypick_test(povray_oracle_test LABELS oracle data SOURCES pov_scene.cpp TIMEOUT 600)
     raypick_test(invariance_test LABELS cpu data)

@@ -31,6 +31,13 @@ RayCone part_of(const RayCone& cone, int side) {
     return {cone.width / parts, cone.spread / parts};
 }
 
+// The same look at the surface that traced rays have, and no more.
+RenderSettings only_a_look() {
+    RenderSettings settings;
+    settings.depth = 1;
+    return settings;
+}
+
 }  // namespace
 
 void check_settings(const RenderSettings& settings) {
@@ -58,45 +65,60 @@ PixelTracer::PixelTracer(std::shared_ptr<const Accel> accel, const Camera& camer
       size_(size),
       settings_(checked(settings, camera, size)),
       rays_(camera, size),
-      lights_(effective_lights(accel_->scene(), camera)),
+      scene_(shade_scene(*accel_, effective_lights(accel_->scene(), camera), settings)),
+      look_(shade_scene(*accel_, {}, only_a_look())),
       pattern_(settings),
       focus_distance_(settings.focus_distance > 0.0 ? settings.focus_distance
                                                     : glm::distance(camera.eye, camera.at)) {}
 
-TracedRay PixelTracer::centre(Pixel pixel, RayCounts& counts, const std::stop_token& stop) const {
+EyeRay PixelTracer::centre_ray(Pixel pixel) const {
     const std::uint64_t seed = RandomSequence::derive(settings_.seed, size_.index(pixel));
-    const EyeRay eye{rays_.ray(pixel_centre(pixel)), rays_.cone(), seed};
-    return trace(*accel_, lights_, settings_, eye, counts, stop);
+    return {rays_.ray(pixel_centre(pixel)), rays_.cone(), seed};
 }
 
-TracedRay PixelTracer::first_hit(Pixel pixel) const {
-    // Without lights and further rays it is no more than a look at the surface, the same one that
-    // traced rays have.
-    RenderSettings settings;
-    settings.depth = 1;
-    RayCounts not_counted;
-    const EyeRay eye{rays_.ray(pixel_centre(pixel)), rays_.cone(), settings_.seed};
-    return trace(*accel_, {}, settings, eye, not_counted, {});
-}
-
-glm::vec3 PixelTracer::corner(Pixel pixel, RayCounts& counts, const std::stop_token& stop) const {
+EyeRay PixelTracer::corner_ray(Pixel pixel) const {
     const ImageSize corners{size_.rows + 1, size_.cols + 1};
     const std::uint64_t seed = RandomSequence::derive(settings_.seed, corners.index(pixel));
     const ImagePoint point{static_cast<double>(pixel.row), static_cast<double>(pixel.col)};
-    const EyeRay eye{rays_.ray(point), rays_.cone(), seed};
-    return trace(*accel_, lights_, settings_, eye, counts, stop).colour;
+    return {rays_.ray(point), rays_.cone(), seed};
 }
 
-void PixelTracer::add_sample(Pixel pixel, int index, PixelMean& mean, RayCounts& counts,
-                             const std::stop_token& stop) const {
+SampleRay PixelTracer::sample_ray(Pixel pixel, int index) const {
     const PixelSample sample = pattern_.sample(size_.index(pixel), index);
     const ImagePoint centre = pixel_centre(pixel);
     const ImagePoint point{centre.r + sample.offset.y, centre.c + sample.offset.x};
     const glm::dvec2 lens = 0.5 * settings_.aperture * sample.lens;
     const Ray ray =
         settings_.aperture > 0.0 ? rays_.lens_ray(point, lens, focus_distance_) : rays_.ray(point);
-    const EyeRay eye{ray, part_of(rays_.cone(), settings_.samples), sample.seed};
-    mean.add(trace(*accel_, lights_, settings_, eye, counts, stop).colour, sample.negative);
+    return {{ray, part_of(rays_.cone(), settings_.samples), sample.seed}, sample.negative};
+}
+
+void PixelTracer::trace(std::span<const EyeRay> eyes, std::span<TracedRay> results,
+                        RayCounts& counts, const std::stop_token& stop) const {
+    trace(scene_, eyes, results, counts, stop);
+}
+
+void PixelTracer::look(std::span<const EyeRay> eyes, std::span<TracedRay> results,
+                       const std::stop_token& stop) const {
+    RayCounts not_counted;
+    trace(look_, eyes, results, not_counted, stop);
+}
+
+void PixelTracer::trace(const ShadeScene& scene, std::span<const EyeRay> eyes,
+                        std::span<TracedRay> results, RayCounts& counts,
+                        const std::stop_token& stop) const {
+    std::unique_ptr<BatchTracer> tracer;
+    {
+        const std::lock_guard lock(mutex_);
+        if (!idle_.empty()) {
+            tracer = std::move(idle_.back());
+            idle_.pop_back();
+        }
+    }
+    if (!tracer) tracer = std::make_unique<BatchTracer>();
+    tracer->trace(scene, eyes, results, counts, stop);
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(tracer));
 }
 
 }  // namespace raypick

@@ -5,12 +5,12 @@
 #include "tracer/geometry/camera.h"
 #include "tracer/render/pixel_filter.h"
 #include "tracer/render/sampling_pattern.h"
+#include "tracer/shade/batch_tracer.h"
 #include "tracer/shade/settings.h"
-#include "tracer/shade/trace.h"
-
-#include <glm/vec3.hpp>
 
 #include <memory>
+#include <mutex>
+#include <span>
 #include <stop_token>
 #include <vector>
 
@@ -20,42 +20,59 @@ namespace raypick {
 // or endless aperture or focus distance or cutoff.
 void check_settings(const RenderSettings& settings);
 
-// What a frame is traced from; immutable while it is. All calls are thread-safe, add the rays they
-// shot to `counts` and depend on the seed and the pixel alone.
+// A ray for one sample of a pixel.
+struct SampleRay {
+    EyeRay eye;
+    bool negative = false;  // the filter is below 0 there
+};
+
+// What a frame is traced from; immutable while it is. All calls are thread-safe. Rays depend on the
+// seed and the pixel alone, what they bring back on nothing else.
 class PixelTracer {
 public:
     // Throws Error on a bad camera, an empty size or bad settings.
     PixelTracer(std::shared_ptr<const Accel> accel, const Camera& camera, ImageSize size,
                 const RenderSettings& settings);
 
-    // Along the ray through the pixel's centre, the one that a pick follows.
-    [[nodiscard]] TracedRay centre(Pixel pixel, RayCounts& counts,
-                                   const std::stop_token& stop) const;
-    // What that ray hits, without colour; not counted.
-    [[nodiscard]] TracedRay first_hit(Pixel pixel) const;
-    // The colour along the ray through a pixel's top left corner; row and column may be one beyond
-    // the last pixel's.
-    [[nodiscard]] glm::vec3 corner(Pixel pixel, RayCounts& counts,
-                                   const std::stop_token& stop) const;
-    // Adds sample `index` of [0, sample_count()) of the stratified pattern.
-    void add_sample(Pixel pixel, int index, PixelMean& mean, RayCounts& counts,
-                    const std::stop_token& stop) const;
+    // Through the pixel's centre: the ray that a pick follows.
+    [[nodiscard]] EyeRay centre_ray(Pixel pixel) const;
+    // Through the pixel's top left corner; row and column may be one beyond the last pixel's.
+    [[nodiscard]] EyeRay corner_ray(Pixel pixel) const;
+    // Sample `index` of [0, sample_count()) of the stratified pattern.
+    [[nodiscard]] SampleRay sample_ray(Pixel pixel, int index) const;
     [[nodiscard]] int sample_count() const { return pattern_.count(); }
     [[nodiscard]] const FilterSampler& filter() const { return pattern_.filter(); }
+
+    // Sets results[i] to what eyes[i] brings back, and adds the rays shot to `counts`. Rays that
+    // lie side by side in the image should be so here. Once `stop` is requested the results are
+    // worthless.
+    void trace(std::span<const EyeRay> eyes, std::span<TracedRay> results, RayCounts& counts,
+               const std::stop_token& stop) const;
+    // What they hit, without colour.
+    void look(std::span<const EyeRay> eyes, std::span<TracedRay> results,
+              const std::stop_token& stop) const;
 
     [[nodiscard]] const Camera& camera() const { return camera_; }
     [[nodiscard]] ImageSize size() const { return size_; }
     [[nodiscard]] const RenderSettings& settings() const { return settings_; }
 
 private:
+    void trace(const ShadeScene& scene, std::span<const EyeRay> eyes, std::span<TracedRay> results,
+               RayCounts& counts, const std::stop_token& stop) const;
+
     std::shared_ptr<const Accel> accel_;
     Camera camera_;
     ImageSize size_;
     RenderSettings settings_;
     RayGenerator rays_;
-    std::vector<Light> lights_;
+    ShadeScene scene_;
+    ShadeScene look_;  // without lights and further rays: no more than a look at the surface
     SamplingPattern pattern_;
     double focus_distance_;
+
+    // Between calls, with the memory that they have got.
+    mutable std::mutex mutex_;
+    mutable std::vector<std::unique_ptr<BatchTracer>> idle_;
 };
 
 }  // namespace raypick

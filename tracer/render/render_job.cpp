@@ -93,6 +93,13 @@ struct RenderJob::State {
     void sample_passes();
     void choose_refined(const Tile& tile);
     void sample_tile(const Tile& tile, int first, int end);
+    void add_samples(const Tile& tile, const std::vector<Pixel>& pixels, int sample,
+                     std::vector<PixelMean>& sums, RayCounts& counts) const;
+    void look_at_centres(TilePart& part) const;
+    [[nodiscard]] std::vector<EyeRay> centre_rays(const Tile& tile,
+                                                  const std::vector<Pixel>& pixels) const;
+    [[nodiscard]] std::vector<glm::vec3> corner_colours(const Tile& tile, RayCounts& counts) const;
+    [[nodiscard]] std::vector<Pixel> sampled_pixels(const Tile& tile) const;
     [[nodiscard]] TilePart begun_part(const Tile& tile, bool first_pass) const;
 
     enum class Piece { coarse, whole, colour };
@@ -160,17 +167,20 @@ void RenderJob::State::show_coarse() {
 void RenderJob::State::coarse_tile(const Tile& tile) {
     TilePart part(tile);
     RayCounts not_counted;  // these pixels are traced again
-    const std::stop_token token = stop.get_token();
     const ImageSize size = part.image.size;
+    std::vector<EyeRay> eyes;
     for (int row = 0; row < size.rows; row += kCoarseStep) {
-        for (int col = 0; col < size.cols; col += kCoarseStep) {
-            if (stopped()) return;
-            const Pixel sample = coarse_sample(tile.in_image({row, col}), tracer.size());
-            const TracedRay traced = tracer.centre(sample, not_counted, token);
-            for (int r = row; r < std::min(row + kCoarseStep, size.rows); ++r) {
-                for (int c = col; c < std::min(col + kCoarseStep, size.cols); ++c)
-                    part.set(size.index({r, c}), traced);
-            }
+        for (int col = 0; col < size.cols; col += kCoarseStep)
+            eyes.push_back(
+                tracer.centre_ray(coarse_sample(tile.in_image({row, col}), tracer.size())));
+    }
+    std::vector<TracedRay> traced(eyes.size());
+    tracer.trace(eyes, traced, not_counted, stop.get_token());
+    const int blocks = (size.cols + kCoarseStep - 1) / kCoarseStep;
+    for (int row = 0; row < size.rows; ++row) {
+        for (int col = 0; col < size.cols; ++col) {
+            const int block = row / kCoarseStep * blocks + col / kCoarseStep;
+            part.set(size.index({row, col}), traced[static_cast<std::size_t>(block)]);
         }
     }
     publish(part, Piece::coarse);
@@ -178,44 +188,73 @@ void RenderJob::State::coarse_tile(const Tile& tile) {
 
 void RenderJob::State::centre_tile(const Tile& tile) {
     TilePart part(tile);
-    const std::stop_token token = stop.get_token();
-    const ImageSize size = part.image.size;
-    for (int row = 0; row < size.rows; ++row) {
-        for (int col = 0; col < size.cols; ++col) {
-            if (stopped()) return;
-            part.set(size.index({row, col}),
-                     tracer.centre(tile.in_image({row, col}), part.rays, token));
-        }
-    }
+    const std::vector<Pixel> pixels = pixels_in_blocks(part.image.size);
+    std::vector<TracedRay> traced(pixels.size());
+    tracer.trace(centre_rays(tile, pixels), traced, part.rays, stop.get_token());
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+        part.set(part.image.size.index(pixels[i]), traced[i]);
     publish(part, Piece::whole);
 }
 
-// Corners that two tiles share are traced by both, which costs a sixteenth, and counted by one.
-void RenderJob::State::corner_tile(const Tile& tile) {
-    TilePart part(tile);
-    RayCounts not_counted;
-    const std::stop_token token = stop.get_token();
-    const ImageSize size = part.image.size;
+std::vector<EyeRay> RenderJob::State::centre_rays(const Tile& tile,
+                                                  const std::vector<Pixel>& pixels) const {
+    std::vector<EyeRay> eyes;
+    eyes.reserve(pixels.size());
+    for (const Pixel& pixel : pixels)
+        eyes.push_back(tracer.centre_ray(tile.in_image(pixel)));
+    return eyes;
+}
+
+// All channels but the colour.
+void RenderJob::State::look_at_centres(TilePart& part) const {
+    const std::vector<Pixel> pixels = pixels_in_blocks(part.image.size);
+    std::vector<TracedRay> seen(pixels.size());
+    tracer.look(centre_rays(part.tile, pixels), seen, stop.get_token());
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        seen[i].colour = glm::vec3(0.0f);
+        part.set(part.image.size.index(pixels[i]), seen[i]);
+    }
+}
+
+// The colours at the corners of the tile's pixels. Corners that two tiles share are traced by both,
+// which costs a sixteenth, and counted by one.
+std::vector<glm::vec3> RenderJob::State::corner_colours(const Tile& tile, RayCounts& counts) const {
+    const ImageSize size = tile.size();
     const ImageSize corners{size.rows + 1, size.cols + 1};
     std::vector<glm::vec3> colours(corners.pixel_count());
-    for (int row = 0; row < corners.rows; ++row) {
-        for (int col = 0; col < corners.cols; ++col) {
-            if (stopped()) return;
-            const Pixel corner = tile.in_image({row, col});
-            const bool own = (row < size.rows || corner.row == tracer.size().rows) &&
-                             (col < size.cols || corner.col == tracer.size().cols);
-            colours[corners.index({row, col})] =
-                tracer.corner(corner, own ? part.rays : not_counted, token);
+    RayCounts not_counted;
+    for (const bool own : {true, false}) {
+        std::vector<std::size_t> places;
+        std::vector<EyeRay> eyes;
+        for (const Pixel& pixel : pixels_in_blocks(corners)) {
+            const Pixel corner = tile.in_image(pixel);
+            const bool is_own = (pixel.row < size.rows || corner.row == tracer.size().rows) &&
+                                (pixel.col < size.cols || corner.col == tracer.size().cols);
+            if (is_own != own) continue;
+            places.push_back(corners.index(pixel));
+            eyes.push_back(tracer.corner_ray(corner));
         }
+        std::vector<TracedRay> traced(eyes.size());
+        tracer.trace(eyes, traced, own ? counts : not_counted, stop.get_token());
+        for (std::size_t i = 0; i < places.size(); ++i)
+            colours[places[i]] = traced[i].colour;
     }
+    return colours;
+}
+
+void RenderJob::State::corner_tile(const Tile& tile) {
+    TilePart part(tile);
+    const ImageSize size = part.image.size;
+    const ImageSize corners{size.rows + 1, size.cols + 1};
+    const std::vector<glm::vec3> colours = corner_colours(tile, part.rays);
+    look_at_centres(part);
     for (int row = 0; row < size.rows; ++row) {
         for (int col = 0; col < size.cols; ++col) {
-            TracedRay pixel = tracer.first_hit(tile.in_image({row, col}));
-            pixel.colour = 0.25f * (colours[corners.index({row, col})] +
-                                    colours[corners.index({row, col + 1})] +
-                                    colours[corners.index({row + 1, col})] +
-                                    colours[corners.index({row + 1, col + 1})]);
-            part.set(size.index({row, col}), pixel);
+            part.set_colour(size.index({row, col}),
+                            0.25f * (colours[corners.index({row, col})] +
+                                     colours[corners.index({row, col + 1})] +
+                                     colours[corners.index({row + 1, col})] +
+                                     colours[corners.index({row + 1, col + 1})]));
         }
     }
     publish(part, Piece::whole);
@@ -244,44 +283,63 @@ void RenderJob::State::choose_refined(const Tile& tile) {
 // What the pixels show before these samples.
 TilePart RenderJob::State::begun_part(const Tile& tile, bool first_pass) const {
     TilePart part(tile);
+    if (first_pass) {
+        look_at_centres(part);
+        return part;
+    }
     const ImageSize size = part.image.size;
     for (int row = 0; row < size.rows; ++row) {
         for (int col = 0; col < size.cols; ++col) {
-            const Pixel pixel = tile.in_image({row, col});
             const std::size_t at = size.index({row, col});
-            if (first_pass) {
-                part.set(at, tracer.first_hit(pixel));
-            } else {
-                const std::size_t in_image = image.size.index(pixel);
-                part.image.colour[at] = image.colour[in_image];
-                part.broken[at] = broken[in_image];
-            }
+            const std::size_t in_image = image.size.index(tile.in_image({row, col}));
+            part.image.colour[at] = image.colour[in_image];
+            part.broken[at] = broken[in_image];
         }
     }
     return part;
 }
 
-// Adds samples [first, end) to each pixel that takes them.
+// The pixels of a tile that take more samples.
+std::vector<Pixel> RenderJob::State::sampled_pixels(const Tile& tile) const {
+    std::vector<Pixel> pixels = pixels_in_blocks(tile.size());
+    if (refining.empty()) return pixels;
+    std::erase_if(pixels, [&](const Pixel& pixel) {
+        return refining[image.size.index(tile.in_image(pixel))] == 0;
+    });
+    return pixels;
+}
+
+// Adds samples [first, end) to each pixel that takes them, one of each pixel after the other.
 void RenderJob::State::sample_tile(const Tile& tile, int first, int end) {
     const bool first_pass = first == 0 && refining.empty();
     TilePart part = begun_part(tile, first_pass);
-    const std::stop_token token = stop.get_token();
-    const ImageSize size = part.image.size;
-    for (int row = 0; row < size.rows; ++row) {
-        for (int col = 0; col < size.cols; ++col) {
-            const Pixel pixel = tile.in_image({row, col});
-            const std::size_t in_image = image.size.index(pixel);
-            if (!refining.empty() && refining[in_image] == 0) continue;
-            PixelMean mean = means.empty() ? PixelMean{} : means[in_image];
-            for (int sample = first; sample < end; ++sample) {
-                if (stopped()) return;
-                tracer.add_sample(pixel, sample, mean, part.rays, token);
-            }
-            if (!means.empty()) means[in_image] = mean;
-            part.set_colour(size.index({row, col}), mean.colour(tracer.filter()));
-        }
+    const std::vector<Pixel> pixels = sampled_pixels(tile);
+    std::vector<PixelMean> sums(pixels.size());
+    const auto in_image = [&](std::size_t i) { return image.size.index(tile.in_image(pixels[i])); };
+    for (std::size_t i = 0; i < pixels.size() && !means.empty(); ++i)
+        sums[i] = means[in_image(i)];
+    for (int sample = first; sample < end && !stopped(); ++sample)
+        add_samples(tile, pixels, sample, sums, part.rays);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        if (!means.empty()) means[in_image(i)] = sums[i];
+        part.set_colour(part.image.size.index(pixels[i]), sums[i].colour(tracer.filter()));
     }
     publish(part, first_pass ? Piece::whole : Piece::colour);
+}
+
+void RenderJob::State::add_samples(const Tile& tile, const std::vector<Pixel>& pixels, int sample,
+                                   std::vector<PixelMean>& sums, RayCounts& counts) const {
+    std::vector<EyeRay> eyes;
+    std::vector<std::uint8_t> negative;
+    for (const Pixel& pixel : pixels) {
+        const SampleRay ray = tracer.sample_ray(tile.in_image(pixel), sample);
+        eyes.push_back(ray.eye);
+        negative.push_back(ray.negative ? 1 : 0);
+    }
+    std::vector<TracedRay> traced(eyes.size());
+    tracer.trace(eyes, traced, counts, stop.get_token());
+    for (std::size_t i = 0; i < eyes.size(); ++i)
+        sums[i].add(traced[i].colour, negative[i] != 0);
 }
 
 void RenderJob::State::publish(const TilePart& part, Piece piece) {

@@ -4,8 +4,8 @@
 #include "tracer/accel/accel.h"
 #include "tracer/geometry/camera.h"
 #include "tracer/render/image.h"
+#include "tracer/shade/ray_counts.h"
 #include "tracer/shade/settings.h"
-#include "tracer/shade/trace.h"
 
 #include <cstdint>
 #include <memory>

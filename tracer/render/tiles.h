@@ -3,7 +3,8 @@
 
 #include "tracer/geometry/pixel.h"
 #include "tracer/render/image.h"
-#include "tracer/shade/trace.h"
+#include "tracer/shade/eye_ray.h"
+#include "tracer/shade/ray_counts.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -30,6 +31,9 @@ struct Tile {
 
 // All tiles of an image, those nearest to its centre first.
 std::vector<Tile> tiles_from_centre(ImageSize size);
+
+// A tile's own pixels in blocks of 16 x 4: rays through the pixels of one go much the same way.
+std::vector<Pixel> pixels_in_blocks(ImageSize size);
 
 // What one thread made of a tile.
 struct TilePart {

@@ -31,6 +31,7 @@ public:
     // What is there: the material of the highest priority, of those the one entered last;
     // kNoMaterial is air.
     [[nodiscard]] MaterialId medium(const Scene& scene) const;
+    [[nodiscard]] bool empty() const { return count_ == 0; }
     [[nodiscard]] bool holds(const Body& body) const;
 
     // Nine bodies deep the oldest one is forgotten.

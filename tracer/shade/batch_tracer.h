@@ -1,0 +1,109 @@
+// trace() for many eye rays at once, breadth first: all rays of one depth are followed together, so
+// that those which go the same way can share the work of finding what they hit.
+#pragma once
+
+#include "tracer/shade/boundary.h"
+#include "tracer/shade/branches.h"
+#include "tracer/shade/eye_ray.h"
+#include "tracer/shade/light_sample.h"
+#include "tracer/shade/ray_counts.h"
+#include "tracer/shade/shade_scene.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+namespace raypick {
+
+// Keeps its memory from call to call; one a thread.
+//
+// Rays of a generation are followed in the order of their directions' octants, and what they bring
+// back is added up in the order in which they left: results are those of trace() to the bit,
+// whatever rays travel together. A generation goes on in portions, each with all that comes after
+// it before the next one: glass spawns 2^depth rays, but only so many of each depth are there at
+// the same time.
+class BatchTracer {
+public:
+    // Sets results[i] to what trace() finds for eyes[i], and adds the rays to `counts`. Once `stop`
+    // is requested no more rays are shot, and the results are worthless.
+    void trace(const ShadeScene& scene, std::span<const EyeRay> eyes, std::span<TracedRay> results,
+               RayCounts& counts, const std::stop_token& stop = {});
+
+private:
+    // A ray and what comes along it: passed * colour.
+    struct PathRay {
+        Ray ray;
+        glm::vec3 share{1.0f};     // of what comes along it, in the colour at its parent's end
+        std::uint32_t parent = 0;  // the ray at whose end it begins; an eye ray's number
+        RayCone cone;              // at its origin, then at its end
+        float weight = 1.0f;       // the most that it can add to its pixel
+        std::uint64_t seed = 0;    // of what is random at its end
+        std::uint32_t interior = kNoInterior;
+        std::uint8_t direction = 0;  // group of rays that it travels with
+        glm::vec3 passed{1.0f};      // what absorption leaves on its way
+        glm::vec3 colour{0.0f};      // that leaves its end
+    };
+    static constexpr std::uint32_t kNoInterior = 0xffffffffu;  // outside of everything
+
+    // All rays of one depth that are there at a time.
+    struct Generation {
+        std::vector<PathRay> rays;         // in the order in which they left
+        std::vector<Interior> interiors;   // of those inside of something
+        std::vector<std::uint32_t> order;  // in which they are followed
+
+        [[nodiscard]] const Interior* interior_of(const PathRay& ray) const {
+            return ray.interior == kNoInterior ? nullptr : &interiors[ray.interior];
+        }
+        void put_inside(PathRay& ray, const Interior& interior);
+    };
+
+    // A lit point at the end of a ray.
+    struct LitPoint {
+        std::uint32_t ray = 0;
+        ShadingPoint point;
+    };
+    // A light's sample on its way to a point, of points_.
+    struct Arriving {
+        std::uint32_t point = 0;
+        LightSample light;
+    };
+
+    // What one call of trace() is about.
+    struct Job {
+        const ShadeScene& scene;
+        std::span<TracedRay> results;
+        RayCounts& counts;
+        const std::stop_token& stop;
+    };
+
+    Generation& generation(int depth);
+    void follow(const Job& job, int depth);
+    void follow_portion(const Job& job, int depth, std::span<const std::uint32_t> portion);
+    void find_points(const Job& job, int depth);
+    void intersect_groups(const Job& job);
+    bool arrive(const Job& job, int depth, int hidden, std::size_t i);
+    void send_branches(const Job& job, int depth, const LitPoint& from, const Boundary& boundary);
+    void light_points(const Job& job, int depth);
+    void light_points_by(const Job& job, int depth, std::size_t light, int sample);
+    void find_shares(const Job& job, int depth, const PreparedLight& light);
+    void collect(int depth);
+
+    std::deque<Generation> generations_;  // by depth - 1
+
+    // Of the portion at work.
+    std::vector<std::uint32_t> at_work_;  // rays on their way
+    std::vector<std::uint8_t> directions_;
+    std::vector<Ray> rays_;
+    std::vector<Hit> hits_;
+    std::vector<LitPoint> points_;
+    std::vector<Arriving> arriving_;
+    std::vector<Ray> shadow_rays_;
+    std::vector<std::uint8_t> blocked_;
+    std::vector<glm::vec3> shares_;
+};
+
+}  // namespace raypick

@@ -1,0 +1,46 @@
+// What a ray meets: a surface with the glass on both sides of it.
+#pragma once
+
+#include "tracer/shade/interior.h"
+#include "tracer/shade/shade_scene.h"
+
+#include <glm/vec3.hpp>
+
+#include <optional>
+
+namespace raypick {
+
+// Surfaces inside of glass of a higher priority that a ray goes through at most.
+inline constexpr int kMostHidden = 64;
+
+// A surface as one ray meets it.
+struct Boundary {
+    std::optional<Crossing> crossing;  // only where it bounds a body
+    MaterialId medium = kNoMaterial;   // that the ray came through
+    float eta = 1.0f;                  // index before over index beyond
+    bool is_there = true;              // false: hidden inside of glass of a higher priority
+};
+// `interior`: the bodies around the ray on its way there; nullptr: none.
+Boundary boundary_at(const ShadeScene& scene, const FoundHit& found, const Hit& hit,
+                     const Interior* interior);
+
+// A hit as the shading sees it: normals turned to the side the ray came from.
+struct ShadingPoint {
+    SurfacePoint surface;
+    const Material* kind = nullptr;  // before its maps
+    SurfaceMaterial material;        // after them
+    glm::vec3 normal{0.0f};          // shading normal
+    glm::vec3 geometric{0.0f};       // geometric normal
+    glm::vec3 incoming{0.0f};        // unit direction of the ray that arrived here
+};
+// `width`: of the ray's cone there.
+ShadingPoint shading_point(const ShadeScene& scene, const FoundHit& found,
+                           const glm::vec3& incoming, float width);
+
+// What the surface gives off by itself: its own glow, and the ambient light on it.
+glm::vec3 own_light(const ShadeScene& scene, const ShadingPoint& point);
+
+// A ray from the point, off its surface.
+Ray leaving(const ShadingPoint& point, const glm::vec3& direction);
+
+}  // namespace raypick

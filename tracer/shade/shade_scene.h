@@ -1,0 +1,53 @@
+// What shading looks up at every hit, worked out once a frame.
+#pragma once
+
+#include "tracer/accel/accel.h"
+#include "tracer/accel/surface.h"
+#include "tracer/shade/light_sample.h"
+#include "tracer/shade/settings.h"
+#include "tracer/shade/textured.h"
+
+#include <glm/vec3.hpp>
+
+#include <span>
+#include <vector>
+
+namespace raypick {
+
+struct PreparedMaterial {
+    const Material* material = nullptr;
+    SurfaceMaterial plain;  // without its maps
+    bool has_maps = false;
+    bool fills = false;        // a body: see fills() in interior.h
+    bool see_through = false;  // lets some of a light through, where shadows are tinted
+};
+
+// A frame's scene, lights and settings as shading sees them. Immutable while rays are traced.
+struct ShadeScene {
+    const Accel* accel = nullptr;
+    const Scene* scene = nullptr;
+    RenderSettings settings;
+    std::vector<PreparedLight> lights;
+    std::vector<PreparedMaterial> materials;  // by id; the last one is that of no id
+    bool has_bodies = false;                  // rays may be inside of something
+    bool draws_lots = false;                  // points on lights are random
+};
+
+// `lights` as from effective_lights. `accel` must outlive the result.
+ShadeScene shade_scene(const Accel& accel, std::span<const Light> lights,
+                       const RenderSettings& settings);
+
+const PreparedMaterial& prepared_material(const ShadeScene& scene, MaterialId id);
+
+// An object's hit with what is known of it.
+struct FoundHit {
+    const Object& object;
+    const PreparedMaterial& material;
+    SurfacePoint surface;
+};
+FoundHit find_surface(const ShadeScene& scene, const Ray& ray, const Hit& hit);
+
+// What is left after this way through a medium (Beer and Lambert's law).
+glm::vec3 passed(const ShadeScene& scene, MaterialId medium, float distance);
+
+}  // namespace raypick
