@@ -16,7 +16,7 @@ namespace {
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 double largest(const glm::dvec3& v) {
-    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
 }
 
 glm::dvec3 at(const ObjectRay& ray, double t) {
@@ -68,11 +68,13 @@ public:
     // True if a point of a triangle whose least weight this is lies within no rim of its edges: its
     // distance to each is at least that weight's share of the least height. Quick to see for most.
     [[nodiscard]] bool is_far(double least_weight, const glm::dvec3& edge_b,
-                              const glm::dvec3& edge_c) const {
+                              const glm::dvec3& edge_c, const glm::dvec3& normal) const {
         const glm::dvec3 b = in_scene(edge_b);
         const glm::dvec3 c = in_scene(edge_c);
-        const glm::dvec3 area = glm::cross(b, c);
-        const double longest = std::max({glm::dot(b, b), glm::dot(c, c), glm::dot(c - b, c - b)});
+        const glm::dvec3 area = needs_.world_from_object != nullptr ? glm::cross(b, c) : normal;
+        const glm::dvec3 across = c - b;
+        const double longest =
+            std::max(std::max(glm::dot(b, b), glm::dot(c, c)), glm::dot(across, across));
         return least_weight > 0.0 && least_weight * least_weight * glm::dot(area, area) >
                                          1.0001 * needs_.rim * needs_.rim * longest;
     }
@@ -238,12 +240,13 @@ LocalPoint triangle_point(const ObjectRay& ray, const Hit& hit, const glm::dvec3
     const glm::dvec3 normal = glm::cross(edge_b, edge_c);
     const glm::dvec2 uv = exact_weights(ray, hit, a, edge_b, edge_c, normal);
     glm::dvec3 weights{1.0 - uv.x - uv.y, uv.x, uv.y};
-    if (!rim.is_far(std::min({weights.x, weights.y, weights.z}), edge_b, edge_c)) {
+    const double least = std::min(std::min(weights.x, weights.y), weights.z);
+    if (!rim.is_far(least, edge_b, edge_c, normal)) {
         weights = off_the_edges(weights, {rim.share(edge_b, c - b), rim.share(b - c, edge_c),
                                           rim.share(edge_c, edge_b)});
     }
     LocalPoint point = flat_point(weights.x * a + weights.y * b + weights.z * c, normal,
-                                  std::max({largest(a), largest(b), largest(c)}));
+                                  std::max(std::max(largest(a), largest(b)), largest(c)));
     point.dpdu = edge_b;
     point.dpdv = edge_c;
     return point;

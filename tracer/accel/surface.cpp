@@ -5,15 +5,17 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <variant>
 
 namespace raypick {
 
 namespace {
+
+double largest(const glm::dvec3& v) {
+    return std::max({v.x, v.y, v.z});
+}
 
 // The way of points and vectors between an object's space and the scene's. Where both are the same
 // nothing is multiplied.
@@ -52,6 +54,13 @@ public:
         return size * 0x1p-24 + reach(magnitude, size) * 0x1p-47;
     }
 
+    // The largest of rounding_bound(0, position).
+    [[nodiscard]] double largest_rounding_bound(const glm::dvec3& position) const {
+        if (moves_) return largest(rounding_bound(0.0, position));
+        const double size = largest(glm::abs(position));
+        return size * 0x1p-24 + size * 0x1p-47;
+    }
+
 private:
     [[nodiscard]] glm::dvec3 reach(double magnitude, const glm::dvec3& size) const {
         if (!moves_) return size + magnitude;
@@ -72,20 +81,6 @@ private:
 // A ray leaves a wall by up to three such bounds. This many along the wall keep it on the right
 // side of another one that meets it at a sharp angle, and are less than can be seen.
 constexpr double kRimInBounds = 64.0;
-
-double largest(const glm::dvec3& v) {
-    return std::max({v.x, v.y, v.z});
-}
-
-// std::nextafter towards an infinity, which takes a call and looks at all cases.
-float next_float(float x, bool upwards) {
-    if (!std::isfinite(x) || x == 0.0f) {
-        const float end = std::numeric_limits<float>::infinity();
-        return std::nextafter(x, upwards ? end : -end);
-    }
-    const auto bits = std::bit_cast<std::uint32_t>(x);
-    return std::bit_cast<float>((x > 0.0f) == upwards ? bits + 1 : bits - 1);
-}
 
 // The weights of tangent vectors p and q that make up `vector`, which lies in their plane.
 class TangentPlane {
@@ -127,7 +122,7 @@ SurfacePoint surface_point(const Scene& scene, const HitObject& at, const Ray& r
     const Placement place(at.object.world_from_object, at.object_from_world);
     const glm::dvec3 met =
         glm::dvec3(ray.origin) + static_cast<double>(hit.t) * glm::dvec3(ray.direction);
-    const double rim = kRimInBounds * largest(place.rounding_bound(0.0, met));
+    const double rim = kRimInBounds * place.largest_rounding_bound(met);
     const LocalPoint local = local_point(scene, at.object, place.object_ray(ray), hit,
                                          {place.linear(), rim, at.textured});
     const glm::dvec3 position = place.world_point(local.position);
@@ -148,19 +143,6 @@ SurfacePoint surface_point(const Scene& scene, const HitObject& at, const Ray& r
     surface.front_face = hit.front_face;
     surface.material = at.material;
     return surface;
-}
-
-glm::vec3 offset_origin(const SurfacePoint& point, const glm::vec3& direction) {
-    const glm::vec3 normal = glm::dot(point.geometric_normal, direction) >= 0.0f
-                                 ? point.geometric_normal
-                                 : -point.geometric_normal;
-    // Twice the bound: once for the point, once for the rounding of the sum.
-    const float distance = 2.0f * glm::dot(glm::abs(normal), point.position_error);
-    glm::vec3 origin = point.position + distance * normal;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (normal[axis] != 0.0f) origin[axis] = next_float(origin[axis], normal[axis] > 0.0f);
-    }
-    return origin;
 }
 
 glm::vec2 texture_uv(const Scene& scene, const Object& object, const Hit& hit) {

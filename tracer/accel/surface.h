@@ -5,6 +5,14 @@
 #include "tracer/geometry/ray.h"
 #include "tracer/scene/scene.h"
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
 namespace raypick {
 
 struct SurfacePoint {
@@ -33,10 +41,30 @@ struct HitObject {
 // The same without looking it up again.
 SurfacePoint surface_point(const Scene& scene, const HitObject& at, const Ray& ray, const Hit& hit);
 
+// The next float on the side that `way` points to; x itself if that is 0. What std::nextafter gives
+// by a call.
+inline float next_float(float x, float way) {
+    const auto bits = std::bit_cast<std::uint32_t>(x);
+    const bool finite_not_zero = (bits & 0x7fffffffu) - 1u < 0x7f7fffffu;
+    if (way == 0.0f || !finite_not_zero) {
+        return way == 0.0f ? x : std::nextafter(x, std::copysign(HUGE_VALF, way));
+    }
+    return std::bit_cast<float>((x > 0.0f) == (way > 0.0f) ? bits + 1u : bits - 1u);
+}
+
 // Origin for a ray that leaves the surface on the side that `direction` points to: moved off by the
 // point's own error bound and no more. Source: Pharr, Jakob, Humphreys, Physically Based Rendering,
 // 4th ed. 2023, section 6.8.
-glm::vec3 offset_origin(const SurfacePoint& point, const glm::vec3& direction);
+inline glm::vec3 offset_origin(const SurfacePoint& point, const glm::vec3& direction) {
+    const glm::vec3 normal = glm::dot(point.geometric_normal, direction) >= 0.0f
+                                 ? point.geometric_normal
+                                 : -point.geometric_normal;
+    // Twice the bound: once for the point, once for the rounding of the sum.
+    const float distance = 2.0f * glm::dot(glm::abs(normal), point.position_error);
+    const glm::vec3 origin = point.position + distance * normal;
+    return {next_float(origin.x, normal.x), next_float(origin.y, normal.y),
+            next_float(origin.z, normal.z)};
+}
 
 // The uv that textures are looked up by.
 glm::vec2 texture_uv(const Scene& scene, const Object& object, const Hit& hit);

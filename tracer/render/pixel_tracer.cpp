@@ -65,22 +65,26 @@ PixelTracer::PixelTracer(std::shared_ptr<const Accel> accel, const Camera& camer
       size_(size),
       settings_(checked(settings, camera, size)),
       rays_(camera, size),
+      cone_(rays_.cone()),
       scene_(shade_scene(*accel_, effective_lights(accel_->scene(), camera), settings)),
       look_(shade_scene(*accel_, {}, only_a_look())),
       pattern_(settings),
       focus_distance_(settings.focus_distance > 0.0 ? settings.focus_distance
                                                     : glm::distance(camera.eye, camera.at)) {}
 
+// Nothing else is random on the way of a ray than points on lights.
+std::uint64_t PixelTracer::seed_of(std::size_t ray) const {
+    return scene_.draws_lots ? RandomSequence::derive(settings_.seed, ray) : 0;
+}
+
 EyeRay PixelTracer::centre_ray(Pixel pixel) const {
-    const std::uint64_t seed = RandomSequence::derive(settings_.seed, size_.index(pixel));
-    return {rays_.ray(pixel_centre(pixel)), rays_.cone(), seed};
+    return {rays_.ray(pixel_centre(pixel)), cone_, seed_of(size_.index(pixel))};
 }
 
 EyeRay PixelTracer::corner_ray(Pixel pixel) const {
     const ImageSize corners{size_.rows + 1, size_.cols + 1};
-    const std::uint64_t seed = RandomSequence::derive(settings_.seed, corners.index(pixel));
     const ImagePoint point{static_cast<double>(pixel.row), static_cast<double>(pixel.col)};
-    return {rays_.ray(point), rays_.cone(), seed};
+    return {rays_.ray(point), cone_, seed_of(corners.index(pixel))};
 }
 
 SampleRay PixelTracer::sample_ray(Pixel pixel, int index) const {
@@ -90,7 +94,7 @@ SampleRay PixelTracer::sample_ray(Pixel pixel, int index) const {
     const glm::dvec2 lens = 0.5 * settings_.aperture * sample.lens;
     const Ray ray =
         settings_.aperture > 0.0 ? rays_.lens_ray(point, lens, focus_distance_) : rays_.ray(point);
-    return {{ray, part_of(rays_.cone(), settings_.samples), sample.seed}, sample.negative};
+    return {{ray, part_of(cone_, settings_.samples), sample.seed}, sample.negative};
 }
 
 void PixelTracer::trace(std::span<const EyeRay> eyes, std::span<TracedRay> results,

@@ -8,6 +8,8 @@
 #include "tracer/shade/batch_tracer.h"
 #include "tracer/shade/settings.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -57,6 +59,7 @@ public:
     [[nodiscard]] const RenderSettings& settings() const { return settings_; }
 
 private:
+    [[nodiscard]] std::uint64_t seed_of(std::size_t ray) const;
     void trace(const ShadeScene& scene, std::span<const EyeRay> eyes, std::span<TracedRay> results,
                RayCounts& counts, const std::stop_token& stop) const;
 
@@ -65,6 +68,7 @@ private:
     ImageSize size_;
     RenderSettings settings_;
     RayGenerator rays_;
+    RayCone cone_;  // of a ray that stands for a whole pixel
     ShadeScene scene_;
     ShadeScene look_;  // without lights and further rays: no more than a look at the surface
     SamplingPattern pattern_;

@@ -104,6 +104,7 @@ struct RenderJob::State {
 
     enum class Piece { coarse, whole, colour };
     void publish(const TilePart& part, Piece piece);
+    void count_broken(const TilePart& part);
     [[nodiscard]] bool stopped() const { return stop.stop_requested(); }
     [[nodiscard]] std::size_t work() const {
         return image.size.pixel_count() * static_cast<std::size_t>(passes);
@@ -294,6 +295,7 @@ TilePart RenderJob::State::begun_part(const Tile& tile, bool first_pass) const {
             const std::size_t in_image = image.size.index(tile.in_image({row, col}));
             part.image.colour[at] = image.colour[in_image];
             part.broken[at] = broken[in_image];
+            part.any_broken = part.any_broken || broken[in_image] != 0;
         }
     }
     return part;
@@ -353,19 +355,28 @@ void RenderJob::State::publish(const TilePart& part, Piece piece) {
     }
     // Pieces of a coarse image are not shown: what is between them would be black.
     if (piece == Piece::coarse) return;
-    const std::size_t count = part.image.size.pixel_count();
-    for (std::size_t i = 0; i < count; ++i) {
-        const Pixel pixel = tile.in_image({static_cast<int>(i) / part.image.size.cols,
-                                           static_cast<int>(i) % part.image.size.cols});
-        std::uint8_t& was = broken[image.size.index(pixel)];
-        broken_count += part.broken[i];
-        broken_count -= was;
-        was = part.broken[i];
+    count_broken(part);
+    for (int row = tile.row_begin; row < tile.row_end; ++row) {
+        const auto first = static_cast<std::ptrdiff_t>(image.size.index({row, tile.col_begin}));
+        std::fill_n(done.begin() + first, part.image.size.cols, std::uint8_t{1});
     }
-    copy_tile(std::vector<std::uint8_t>(count, 1), tile, done, image.size);
-    done_count += count;
+    done_count += part.image.size.pixel_count();
     rays += part.rays;
     ++version;
+}
+
+void RenderJob::State::count_broken(const TilePart& part) {
+    if (!part.any_broken && broken_count == 0) return;
+    const ImageSize size = part.image.size;
+    for (int row = 0; row < size.rows; ++row) {
+        for (int col = 0; col < size.cols; ++col) {
+            const std::uint8_t is = part.broken[size.index({row, col})];
+            std::uint8_t& was = broken[image.size.index(part.tile.in_image({row, col}))];
+            broken_count += is;
+            broken_count -= was;
+            was = is;
+        }
+    }
 }
 
 Pixel FrameSnapshot::sampled_pixel(Pixel pixel) const {
@@ -420,6 +431,11 @@ bool RenderJob::snapshot(FrameSnapshot& frame) const {
     return true;
 }
 
+Image RenderJob::take_image() {
+    wait();
+    return std::move(state_->image);
+}
+
 const Camera& RenderJob::camera() const {
     return state_->tracer.camera();
 }
@@ -436,9 +452,7 @@ RenderedFrame render(std::shared_ptr<const Accel> accel, const Camera& camera, I
     frame.rays = progress.rays;
     frame.nan_pixels = progress.nan_pixels;
     frame.seconds = progress.seconds;
-    FrameSnapshot snapshot;
-    job.snapshot(snapshot);
-    frame.image = std::move(snapshot.image);
+    frame.image = job.take_image();
     return frame;
 }
 

@@ -64,6 +64,10 @@ public:
     // Returns when the workers have ended. Rethrows what a worker threw.
     void wait();
 
+    // The same, and the image without a copy of it: neither snapshots nor progress mean anything
+    // afterwards.
+    [[nodiscard]] Image take_image();
+
     [[nodiscard]] RenderProgress progress() const;
     // Brings `frame` up to date. Does nothing and returns false if it is, by its version, or as
     // long as the coarse image is not whole. Cheap enough for each GUI frame; never waits for the

@@ -15,10 +15,6 @@ double distance_squared(const Tile& tile, ImageSize image) {
     return r * r + c * c;
 }
 
-bool all_finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 // As the screen shows it: what is brighter than white looks like white.
 glm::vec3 seen(const glm::vec3& colour) {
     const glm::vec3 shown = glm::clamp(colour, 0.0f, 1.0f);
@@ -72,25 +68,6 @@ std::vector<Pixel> pixels_in_blocks(ImageSize size) {
 
 TilePart::TilePart(const Tile& where)
     : tile(where), image(make_image(where.size())), broken(image.size.pixel_count(), 0) {}
-
-void TilePart::set_colour(std::size_t pixel, const glm::vec3& colour) {
-    const bool finite = all_finite(colour);
-    image.colour[pixel] = finite ? colour : glm::vec3(0.0f);
-    if (!finite) broken[pixel] = 1;
-}
-
-void TilePart::set(std::size_t pixel, const TracedRay& traced) {
-    set_colour(pixel, traced.colour);
-    if (!traced.hit.valid()) return;
-    image.depth[pixel] = traced.hit.t;
-    image.object[pixel] = traced.hit.object;
-    image.primitive[pixel] = traced.hit.primitive;
-    if (all_finite(traced.normal)) {
-        image.normal[pixel] = traced.normal;
-    } else {
-        broken[pixel] = 1;
-    }
-}
 
 void copy_tile(const Image& from, const Tile& tile, Image& to) {
     copy_tile(from.colour, tile, to.colour, to.size);

@@ -41,13 +41,33 @@ struct TilePart {
 
     // Pixels by their number in the tile. A colour or a normal that is not finite is kept as 0, and
     // the pixel counts as broken.
-    void set(std::size_t pixel, const TracedRay& traced);
-    void set_colour(std::size_t pixel, const glm::vec3& colour);
+    void set(std::size_t pixel, const TracedRay& traced) {
+        set_colour(pixel, traced.colour);
+        if (!traced.hit.valid()) return;
+        image.depth[pixel] = traced.hit.t;
+        image.object[pixel] = traced.hit.object;
+        image.primitive[pixel] = traced.hit.primitive;
+        image.normal[pixel] = checked(pixel, traced.normal);
+    }
+    void set_colour(std::size_t pixel, const glm::vec3& colour) {
+        image.colour[pixel] = checked(pixel, colour);
+    }
 
     Tile tile;
     Image image;                       // of the tile's size
     std::vector<std::uint8_t> broken;  // per pixel: 1 or 0
+    bool any_broken = false;
     RayCounts rays;
+
+private:
+    glm::vec3 checked(std::size_t pixel, const glm::vec3& v) {
+        // 0 times infinity or NaN is NaN.
+        const glm::vec3 zero = 0.0f * v;
+        if (zero.x + zero.y + zero.z == 0.0f) return v;
+        any_broken = true;
+        broken[pixel] = 1;
+        return glm::vec3(0.0f);
+    }
 };
 
 // Writes a tile's channel into that of the image.

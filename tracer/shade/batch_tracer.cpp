@@ -46,85 +46,81 @@ void BatchTracer::trace(const ShadeScene& scene, std::span<const EyeRay> eyes,
                         std::span<TracedRay> results, RayCounts& counts,
                         const std::stop_token& stop) {
     const Job job{scene, results, counts, stop};
+    begin(eyes);
+    std::fill(results.begin(), results.end(), TracedRay{});
+    counts.eye += eyes.size();
+    follow(job, 1);
+    const std::vector<PathRay>& rays = generation(1).rays;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        results[i].colour = rays[i].passed * rays[i].colour;
+}
+
+void BatchTracer::begin(std::span<const EyeRay> eyes) {
     Generation& first = generation(1);
-    first.rays.resize(eyes.size());
     first.interiors.clear();
+    first.rays.clear();
+    first.rays.reserve(eyes.size());
     for (std::size_t i = 0; i < eyes.size(); ++i) {
-        PathRay path;
+        PathRay& path = first.rays.emplace_back();
         path.ray = eyes[i].ray;
         path.parent = static_cast<std::uint32_t>(i);
         path.cone = eyes[i].cone;
         path.seed = eyes[i].seed;
-        first.rays[i] = path;
-        results[i] = {};
     }
-    counts.eye += eyes.size();
-    follow(job, 1);
-    for (std::size_t i = 0; i < eyes.size(); ++i)
-        results[i].colour = first.rays[i].passed * first.rays[i].colour;
 }
 
 // Brings back what comes along all rays of a generation.
 void BatchTracer::follow(const Job& job, int depth) {
-    Generation& at = generation(depth);
-    std::array<std::uint32_t, kDirections + 1> place{};
-    for (const PathRay& ray : at.rays)
-        ++place[ray.direction + std::size_t{1}];
-    std::partial_sum(place.begin(), place.end(), place.begin());
-    at.order.resize(at.rays.size());
-    for (std::uint32_t i = 0; i < at.rays.size(); ++i)
-        at.order[place[at.rays[i].direction]++] = i;
-    for (std::size_t first = 0; first < at.order.size(); first += kPortion) {
+    const Step step{job, depth, generation(depth), generation(depth + 1)};
+    std::vector<std::uint32_t>& order = step.at.order;
+    order.resize(step.at.rays.size());
+    if (depth == 1) {  // as they come
+        std::iota(order.begin(), order.end(), 0u);
+    } else {
+        std::array<std::uint32_t, kDirections + 1> place{};
+        for (const PathRay& ray : step.at.rays)
+            ++place[ray.direction + std::size_t{1}];
+        std::partial_sum(place.begin(), place.end(), place.begin());
+        for (std::uint32_t i = 0; i < step.at.rays.size(); ++i)
+            order[place[step.at.rays[i].direction]++] = i;
+    }
+    for (std::size_t first = 0; first < order.size(); first += kPortion) {
         if (job.stop.stop_requested()) return;
-        const std::size_t count = std::min(kPortion, at.order.size() - first);
-        follow_portion(job, depth, std::span(at.order).subspan(first, count));
+        const std::size_t count = std::min(kPortion, order.size() - first);
+        follow_portion(step, std::span(order).subspan(first, count));
     }
 }
 
-void BatchTracer::follow_portion(const Job& job, int depth,
-                                 std::span<const std::uint32_t> portion) {
-    Generation& at = generation(depth);
+void BatchTracer::follow_portion(const Step& step, std::span<const std::uint32_t> portion) {
     at_work_.assign(portion.begin(), portion.end());
-    rays_.clear();
-    directions_.clear();
-    for (const std::uint32_t i : portion) {
-        rays_.push_back(at.rays[i].ray);
-        directions_.push_back(at.rays[i].direction);
+    rays_.resize(portion.size());
+    directions_.resize(portion.size());
+    for (std::size_t i = 0; i < portion.size(); ++i) {
+        rays_[i] = step.at.rays[portion[i]].ray;
+        directions_[i] = step.at.rays[portion[i]].direction;
     }
-    Generation& next = generation(depth + 1);
-    next.rays.clear();
-    next.interiors.clear();
-    find_points(job, depth);
-    light_points(job, depth);
-    if (next.rays.empty()) return;
-    follow(job, depth + 1);
-    collect(depth);
-}
-
-// Adds what the next generation brought back to the points that it left from.
-void BatchTracer::collect(int depth) {
-    std::vector<PathRay>& rays = generation(depth).rays;
-    for (const PathRay& ray : generation(depth + 1).rays)
-        rays[ray.parent].colour += ray.share * (ray.passed * ray.colour);
+    step.next.rays.clear();
+    step.next.interiors.clear();
+    find_points(step);
+    light_points(step);
+    if (step.next.rays.empty()) return;
+    follow(step.job, step.depth + 1);
+    // In the order in which they left.
+    for (const PathRay& ray : step.next.rays)
+        step.at.rays[ray.parent].colour += ray.share * (ray.passed * ray.colour);
 }
 
 // Follows the rays at work to where they end, through surfaces that are hidden inside of glass of a
 // higher priority, and sends on the next generation.
-void BatchTracer::find_points(const Job& job, int depth) {
+void BatchTracer::find_points(const Step& step) {
     points_.clear();
     for (int hidden = 0; !at_work_.empty(); ++hidden) {
-        if (job.stop.stop_requested()) return;
-        intersect_groups(job);
-        if (depth == 1 && hidden == 0) {
-            for (std::size_t i = 0; i < hits_.size(); ++i) {
-                if (!hits_[i].valid()) continue;
-                ++job.counts.eye_hits;
-                job.results[at_work_[i]].hit = hits_[i];
-            }
-        }
+        if (step.job.stop.stop_requested()) return;
+        intersect_groups(step.job);
+        if (step.depth == 1 && hidden == 0) note_first_hits(step.job);
         std::size_t left = 0;
         for (std::size_t i = 0; i < at_work_.size(); ++i) {
-            if (!arrive(job, depth, hidden, i)) continue;
+            if (!arrive(step, hidden, i)) continue;
             at_work_[left] = at_work_[i];
             directions_[left] = directions_[i];
             rays_[left++] = rays_[i];
@@ -148,122 +144,149 @@ void BatchTracer::intersect_groups(const Job& job) {
     }
 }
 
+void BatchTracer::note_first_hits(const Job& job) {
+    for (std::size_t i = 0; i < hits_.size(); ++i) {
+        if (!hits_[i].valid()) continue;
+        ++job.counts.eye_hits;
+        job.results[at_work_[i]].hit = hits_[i];
+    }
+}
+
 // What ray i of those at work brings back by itself. True: it goes on, since the surface is hidden.
-bool BatchTracer::arrive(const Job& job, int depth, int hidden, std::size_t i) {
-    Generation& at = generation(depth);
-    PathRay& path = at.rays[at_work_[i]];
-    const ShadeScene& scene = job.scene;
+bool BatchTracer::arrive(const Step& step, int hidden, std::size_t i) {
+    PathRay& path = step.at.rays[at_work_[i]];
+    const ShadeScene& scene = step.job.scene;
     const Hit& hit = hits_[i];
-    const Interior* interior = at.interior_of(path);
+    const Ray& ray = rays_[i];
     if (!hit.valid()) {
-        const MaterialId medium =
-            interior != nullptr ? interior->medium(*scene.scene) : kNoMaterial;
-        path.colour = passed(scene, medium, rays_[i].t_max) *
-                      environment_colour(*scene.scene, rays_[i].direction, path.cone.spread);
+        see_sky(step, path, ray);
         return false;
     }
-    const FoundHit found = find_surface(scene, rays_[i], hit);
-    const Boundary boundary = boundary_at(scene, found, hit, interior);
-    path.passed *= passed(scene, boundary.medium, hit.t);
+    const FoundHit found = find_surface(scene, ray, hit);
+    const Boundary boundary = boundary_at(scene, found, hit, step.at.interior_of(path));
+    if (boundary.medium != kNoMaterial) path.passed *= passed(scene, boundary.medium, hit.t);
     path.cone.width = path.cone.at(hit.t);
     if (!boundary.is_there && hidden < kMostHidden) {
-        at.put_inside(path, boundary.crossing->after);
-        rays_[i] = Ray{offset_origin(found.surface, rays_[i].direction), rays_[i].direction};
+        step.at.put_inside(path, boundary.crossing->after);
+        rays_[i] = Ray{offset_origin(found.surface, ray.direction), ray.direction};
         return true;
     }
-    if (boundary.crossing) at.put_inside(path, boundary.crossing->before);
+    if (boundary.crossing) step.at.put_inside(path, boundary.crossing->before);
     path.weight *= largest(path.passed);
-    points_.push_back(
-        {at_work_[i], shading_point(scene, found, rays_[i].direction, path.cone.width)});
+    points_.push_back({at_work_[i], shading_point(scene, found, ray.direction, path.cone.width)});
     const LitPoint& lit = points_.back();
-    if (depth == 1) job.results[path.parent].normal = lit.point.normal;
+    if (step.depth == 1) step.job.results[path.parent].normal = lit.point.normal;
     path.colour = own_light(scene, lit.point);
-    if (depth < scene.settings.depth) send_branches(job, depth, lit, boundary);
+    if (found.material.branches && step.depth < scene.settings.depth) {
+        send_branches(step, lit, boundary);
+    }
     return false;
 }
 
+void BatchTracer::see_sky(const Step& step, PathRay& path, const Ray& ray) {
+    const ShadeScene& scene = step.job.scene;
+    path.colour = sky_colour(scene, ray.direction, path.cone.spread);
+    if (const Interior* interior = step.at.interior_of(path)) {
+        path.colour *= passed(scene, interior->medium(*scene.scene), ray.t_max);
+    }
+}
+
 // Rays of the next generation.
-void BatchTracer::send_branches(const Job& job, int depth, const LitPoint& from,
-                                const Boundary& boundary) {
-    const Generation& at = generation(depth);
-    Generation& next = generation(depth + 1);
-    const PathRay& path = at.rays[from.ray];
-    const Branches branches = branches_at(job.scene, from.point, boundary, path.weight);
+void BatchTracer::send_branches(const Step& step, const LitPoint& from, const Boundary& boundary) {
+    const PathRay& path = step.at.rays[from.ray];
+    const ShadeScene& scene = step.job.scene;
+    const Branches branches = branches_at(scene, from.point, boundary, path.weight);
     for (std::size_t i = 0; i < branches.count; ++i) {
         const Branch& branch = branches.branch[i];
-        count_branch(job.counts, branch.kind, depth + 1);
-        PathRay onwards;
+        count_branch(step.job.counts, branch.kind, step.depth + 1);
+        PathRay& onwards = step.next.rays.emplace_back();
         onwards.ray = leaving(from.point, branch.direction);
         onwards.share = branch.share;
         onwards.parent = from.ray;
         onwards.cone = path.cone;
         onwards.weight = branch.weight;
-        onwards.seed = branch_seed(job.scene, path.seed, branch.kind);
+        onwards.seed = branch_seed(scene, path.seed, branch.kind);
         onwards.direction = direction_group(branch.kind, branch.direction);
         if (branch.kind == BranchKind::transmitted && boundary.crossing) {
-            next.put_inside(onwards, boundary.crossing->after);
+            step.next.put_inside(onwards, boundary.crossing->after);
         } else if (path.interior != kNoInterior) {
-            next.put_inside(onwards, at.interiors[path.interior]);
+            step.next.put_inside(onwards, step.at.interiors[path.interior]);
         }
-        next.rays.push_back(onwards);
     }
 }
 
 // One light after the other, so that rays to the same light travel together.
-void BatchTracer::light_points(const Job& job, int depth) {
-    std::vector<PathRay>& rays = generation(depth).rays;
-    for (std::size_t light = 0; light < job.scene.lights.size(); ++light) {
-        for (int sample = 0; sample < job.scene.lights[light].count(); ++sample) {
-            if (job.stop.stop_requested()) return;
-            light_points_by(job, depth, light, sample);
+void BatchTracer::light_points(const Step& step) {
+    const std::vector<PreparedLight>& lights = step.job.scene.lights;
+    for (std::size_t light = 0; light < lights.size() && !points_.empty(); ++light) {
+        for (int sample = 0; sample < lights[light].count(); ++sample) {
+            if (step.job.stop.stop_requested()) return;
+            light_points_by(step, light, sample);
         }
     }
     for (const LitPoint& lit : points_)
-        rays[lit.ray].colour = lit.point.material.opacity * rays[lit.ray].colour;
+        step.at.rays[lit.ray].colour *= lit.point.material.opacity;
 }
 
-void BatchTracer::light_points_by(const Job& job, int depth, std::size_t light, int sample) {
-    const bool shadows = job.scene.settings.shadows;
-    std::vector<PathRay>& rays = generation(depth).rays;
-    const PreparedLight& source = job.scene.lights[light];
+void BatchTracer::light_points_by(const Step& step, std::size_t light, int sample) {
+    gather_light(step, light, sample);
+    if (!step.job.scene.settings.shadows) {
+        for (const Arriving& arriving : arriving_) {
+            const LitPoint& lit = points_[arriving.point];
+            step.at.rays[lit.ray].colour += lit_by(lit.point, arriving.light, glm::vec3(1.0f));
+        }
+        return;
+    }
+    find_shares(step, step.job.scene.lights[light]);
+    std::size_t blocked = 0;
+    for (std::size_t i = 0; i < arriving_.size(); ++i) {
+        if (shares_[i] == glm::vec3(0.0f)) {
+            ++blocked;
+            continue;
+        }
+        const LitPoint& lit = points_[arriving_[i].point];
+        step.at.rays[lit.ray].colour += lit_by(lit.point, arriving_[i].light, shares_[i]);
+    }
+    step.job.counts.shadow_blocked += blocked;
+}
+
+// The light that may arrive, and the shadow rays that have to find out.
+void BatchTracer::gather_light(const Step& step, std::size_t light, int sample) {
+    const ShadeScene& scene = step.job.scene;
+    const PreparedLight& source = scene.lights[light];
     arriving_.clear();
     shadow_rays_.clear();
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
         const ShadingPoint& point = points_[i].point;
-        const std::uint64_t seed = light_seed(job.scene, rays[points_[i].ray].seed, light);
+        const std::uint64_t seed = light_seed(scene, step.at.rays[points_[i].ray].seed, light);
         const LightSample arriving = light_sample(source, point.surface.position, sample, seed);
-        if (!faces(point, arriving) || (shadows && shades_itself(point, arriving))) continue;
+        if (!faces(point, arriving)) continue;
+        if (scene.settings.shadows) {
+            if (shades_itself(point, arriving)) continue;
+            shadow_rays_.push_back(shadow_ray(point, arriving));
+        }
         arriving_.push_back({i, arriving});
-        if (shadows) shadow_rays_.push_back(shadow_ray(point, arriving));
-    }
-    shares_.assign(arriving_.size(), glm::vec3(1.0f));
-    if (shadows) find_shares(job, depth, source);
-    for (std::size_t i = 0; i < arriving_.size(); ++i) {
-        if (shares_[i] == glm::vec3(0.0f)) continue;
-        const LitPoint& lit = points_[arriving_[i].point];
-        rays[lit.ray].colour += lit_by(lit.point, arriving_[i].light, shares_[i]);
     }
 }
 
 // What arrives of the light along the shadow rays.
-void BatchTracer::find_shares(const Job& job, int depth, const PreparedLight&) {
-    count_shadows(job.counts, shadow_rays_.size(), depth);
-    if (job.scene.settings.glass_shadows == GlassShadows::tinted) {
-        const Generation& at = generation(depth);
+void BatchTracer::find_shares(const Step& step, const PreparedLight& /*light*/) {
+    const ShadeScene& scene = step.job.scene;
+    count_shadows(step.job.counts, shadow_rays_.size(), step.depth);
+    shares_.assign(shadow_rays_.size(), glm::vec3(1.0f));
+    if (scene.settings.glass_shadows == GlassShadows::tinted) {
         for (std::size_t i = 0; i < shadow_rays_.size(); ++i) {
-            if (job.stop.stop_requested()) return;
-            const PathRay& path = at.rays[points_[arriving_[i].point].ray];
+            if (step.job.stop.stop_requested()) return;
+            const PathRay& path = step.at.rays[points_[arriving_[i].point].ray];
             shares_[i] =
-                transmittance(job.scene, shadow_rays_[i], at.interior_of(path), path.cone.width);
+                transmittance(scene, shadow_rays_[i], step.at.interior_of(path), path.cone.width);
         }
-    } else {
-        blocked_.resize(shadow_rays_.size());
-        job.scene.accel->occluded(shadow_rays_, blocked_);
-        for (std::size_t i = 0; i < blocked_.size(); ++i)
-            if (blocked_[i] != 0) shares_[i] = glm::vec3(0.0f);
+        return;
     }
-    for (const glm::vec3& share : shares_)
-        job.counts.shadow_blocked += share == glm::vec3(0.0f) ? 1 : 0;
+    blocked_.resize(shadow_rays_.size());
+    scene.accel->occluded(shadow_rays_, blocked_);
+    for (std::size_t i = 0; i < blocked_.size(); ++i)
+        if (blocked_[i] != 0) shares_[i] = glm::vec3(0.0f);
 }
 
 }  // namespace raypick

@@ -79,18 +79,28 @@ private:
         RayCounts& counts;
         const std::stop_token& stop;
     };
+    // The generation at work and the one that it sends on.
+    struct Step {
+        const Job& job;
+        int depth = 1;
+        Generation& at;
+        Generation& next;
+    };
 
     Generation& generation(int depth);
+    void begin(std::span<const EyeRay> eyes);
     void follow(const Job& job, int depth);
-    void follow_portion(const Job& job, int depth, std::span<const std::uint32_t> portion);
-    void find_points(const Job& job, int depth);
+    void follow_portion(const Step& step, std::span<const std::uint32_t> portion);
+    void find_points(const Step& step);
     void intersect_groups(const Job& job);
-    bool arrive(const Job& job, int depth, int hidden, std::size_t i);
-    void send_branches(const Job& job, int depth, const LitPoint& from, const Boundary& boundary);
-    void light_points(const Job& job, int depth);
-    void light_points_by(const Job& job, int depth, std::size_t light, int sample);
-    void find_shares(const Job& job, int depth, const PreparedLight& light);
-    void collect(int depth);
+    void note_first_hits(const Job& job);
+    bool arrive(const Step& step, int hidden, std::size_t i);
+    void see_sky(const Step& step, PathRay& path, const Ray& ray);
+    void send_branches(const Step& step, const LitPoint& from, const Boundary& boundary);
+    void light_points(const Step& step);
+    void light_points_by(const Step& step, std::size_t light, int sample);
+    void gather_light(const Step& step, std::size_t light, int sample);
+    void find_shares(const Step& step, const PreparedLight& light);
 
     std::deque<Generation> generations_;  // by depth - 1
 

@@ -10,15 +10,10 @@ float index_of(const ShadeScene& scene, MaterialId medium) {
 
 }  // namespace
 
-Boundary boundary_at(const ShadeScene& scene, const FoundHit& found, const Hit& hit,
-                     const Interior* interior) {
+Boundary boundary_of_body(const ShadeScene& scene, const FoundHit& found, const Hit& hit,
+                          const Interior* interior) {
     Boundary boundary;
-    if (!scene.has_bodies) return boundary;
     const Scene& world = *scene.scene;
-    if (!found.material.fills) {
-        if (interior != nullptr) boundary.medium = interior->medium(world);
-        return boundary;
-    }
     const SurfacePoint& surface = found.surface;
     const Crossing& crossing = boundary.crossing.emplace(
         cross_surface(world, interior != nullptr ? *interior : Interior{},
@@ -47,17 +42,6 @@ ShadingPoint shading_point(const ShadeScene& scene, const FoundHit& found,
         point.normal = side * surface.shading_normal;
     }
     return point;
-}
-
-glm::vec3 own_light(const ShadeScene& scene, const ShadingPoint& point) {
-    return point.material.emissive + point.material.ambient * scene.scene->ambient;
-}
-
-Ray leaving(const ShadingPoint& point, const glm::vec3& direction) {
-    Ray ray;
-    ray.origin = offset_origin(point.surface, direction);
-    ray.direction = direction;
-    return ray;
 }
 
 }  // namespace raypick

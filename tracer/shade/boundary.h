@@ -21,8 +21,17 @@ struct Boundary {
     bool is_there = true;              // false: hidden inside of glass of a higher priority
 };
 // `interior`: the bodies around the ray on its way there; nullptr: none.
-Boundary boundary_at(const ShadeScene& scene, const FoundHit& found, const Hit& hit,
-                     const Interior* interior);
+Boundary boundary_of_body(const ShadeScene& scene, const FoundHit& found, const Hit& hit,
+                          const Interior* interior);
+inline Boundary boundary_at(const ShadeScene& scene, const FoundHit& found, const Hit& hit,
+                            const Interior* interior) {
+    if (scene.has_bodies && found.material.fills) {
+        return boundary_of_body(scene, found, hit, interior);
+    }
+    Boundary boundary;
+    if (interior != nullptr) boundary.medium = interior->medium(*scene.scene);
+    return boundary;
+}
 
 // A hit as the shading sees it: normals turned to the side the ray came from.
 struct ShadingPoint {
@@ -38,9 +47,13 @@ ShadingPoint shading_point(const ShadeScene& scene, const FoundHit& found,
                            const glm::vec3& incoming, float width);
 
 // What the surface gives off by itself: its own glow, and the ambient light on it.
-glm::vec3 own_light(const ShadeScene& scene, const ShadingPoint& point);
+inline glm::vec3 own_light(const ShadeScene& scene, const ShadingPoint& point) {
+    return point.material.emissive + point.material.ambient * scene.scene->ambient;
+}
 
 // A ray from the point, off its surface.
-Ray leaving(const ShadingPoint& point, const glm::vec3& direction);
+inline Ray leaving(const ShadingPoint& point, const glm::vec3& direction) {
+    return Ray{offset_origin(point.surface, direction), direction};
+}
 
 }  // namespace raypick

@@ -1,7 +1,6 @@
 #include "tracer/shade/branches.h"
 
 #include "tracer/shade/fresnel.h"
-#include "tracer/shade/random.h"
 
 #include <glm/geometric.hpp>
 
@@ -12,8 +11,6 @@
 namespace raypick {
 
 namespace {
-
-constexpr std::uint64_t kFirstLight = 3;  // after the kinds of branches
 
 // Mirror direction about the shading normal; about the geometric one where the former would lead
 // into the surface.
@@ -111,10 +108,6 @@ private:
 
 }  // namespace
 
-float largest(const glm::vec3& v) {
-    return std::max({v.x, v.y, v.z});
-}
-
 Branches branches_at(const ShadeScene& scene, const ShadingPoint& point, const Boundary& boundary,
                      float weight) {
     const RenderSettings& settings = scene.settings;
@@ -144,11 +137,6 @@ Branches branches_at(const ShadeScene& scene, const ShadingPoint& point, const B
 std::uint64_t branch_seed(const ShadeScene& scene, std::uint64_t seed, BranchKind kind) {
     if (!scene.draws_lots) return seed;
     return RandomSequence::derive(seed, static_cast<std::uint64_t>(kind));
-}
-
-std::uint64_t light_seed(const ShadeScene& scene, std::uint64_t seed, std::size_t light) {
-    if (scene.lights[light].count() == 1) return seed;
-    return RandomSequence::derive(seed, kFirstLight + light);
 }
 
 }  // namespace raypick

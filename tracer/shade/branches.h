@@ -2,9 +2,11 @@
 #pragma once
 
 #include "tracer/shade/boundary.h"
+#include "tracer/shade/random.h"
 
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -38,10 +40,16 @@ struct Branches {
 Branches branches_at(const ShadeScene& scene, const ShadingPoint& point, const Boundary& boundary,
                      float weight);
 
-float largest(const glm::vec3& v);
+inline float largest(const glm::vec3& v) {
+    return std::max(std::max(v.x, v.y), v.z);
+}
 
 // The seed of a ray that leaves where one with `seed` arrived, and of the points on a light.
 std::uint64_t branch_seed(const ShadeScene& scene, std::uint64_t seed, BranchKind kind);
-std::uint64_t light_seed(const ShadeScene& scene, std::uint64_t seed, std::size_t light);
+inline std::uint64_t light_seed(const ShadeScene& scene, std::uint64_t seed, std::size_t light) {
+    constexpr std::uint64_t kFirstLight = 3;  // after the kinds of branches
+    if (scene.lights[light].side == 1) return seed;
+    return RandomSequence::derive(seed, kFirstLight + light);
+}
 
 }  // namespace raypick

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 namespace raypick {
 
 namespace {
 
-PreparedMaterial prepared(const Material& material) {
+PreparedMaterial prepared(const Material& material, const RenderSettings& settings) {
     PreparedMaterial result;
     result.material = &material;
     result.plain = plain(material);
@@ -19,6 +20,8 @@ PreparedMaterial prepared(const Material& material) {
     result.see_through =
         material.transmits() || (material.alpha_mode == AlphaMode::blend &&
                                  (material.opacity < 1.0f || material.map(MapSlot::opacity)));
+    result.branches = (settings.refractions && result.see_through) ||
+                      (settings.reflections && (material.reflects() || material.transmits()));
     return result;
 }
 
@@ -30,6 +33,7 @@ ShadeScene shade_scene(const Accel& accel, std::span<const Light> lights,
     result.accel = &accel;
     result.scene = &accel.scene();
     result.settings = settings;
+    result.plain_sky = std::holds_alternative<std::monostate>(accel.scene().environment);
     for (const Light& light : lights) {
         result.lights.push_back(prepared(light));
         if (result.lights.back().count() > 1) result.draws_lots = true;
@@ -37,15 +41,11 @@ ShadeScene shade_scene(const Accel& accel, std::span<const Light> lights,
     const std::vector<Material>& materials = accel.scene().materials;
     result.materials.reserve(materials.size() + 1);
     for (const Material& material : materials) {
-        result.materials.push_back(prepared(material));
+        result.materials.push_back(prepared(material, settings));
         if (settings.refractions && result.materials.back().fills) result.has_bodies = true;
     }
-    result.materials.push_back(prepared(material(accel.scene(), kNoMaterial)));
+    result.materials.push_back(prepared(material(accel.scene(), kNoMaterial), settings));
     return result;
-}
-
-const PreparedMaterial& prepared_material(const ShadeScene& scene, MaterialId id) {
-    return id < scene.materials.size() ? scene.materials[id] : scene.materials.back();
 }
 
 FoundHit find_surface(const ShadeScene& scene, const Ray& ray, const Hit& hit) {

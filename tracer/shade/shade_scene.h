@@ -20,6 +20,7 @@ struct PreparedMaterial {
     bool has_maps = false;
     bool fills = false;        // a body: see fills() in interior.h
     bool see_through = false;  // lets some of a light through, where shadows are tinted
+    bool branches = false;     // may send rays on, by the settings
 };
 
 // A frame's scene, lights and settings as shading sees them. Immutable while rays are traced.
@@ -31,13 +32,16 @@ struct ShadeScene {
     std::vector<PreparedMaterial> materials;  // by id; the last one is that of no id
     bool has_bodies = false;                  // rays may be inside of something
     bool draws_lots = false;                  // points on lights are random
+    bool plain_sky = false;                   // the background is all that is around
 };
 
 // `lights` as from effective_lights. `accel` must outlive the result.
 ShadeScene shade_scene(const Accel& accel, std::span<const Light> lights,
                        const RenderSettings& settings);
 
-const PreparedMaterial& prepared_material(const ShadeScene& scene, MaterialId id);
+inline const PreparedMaterial& prepared_material(const ShadeScene& scene, MaterialId id) {
+    return id < scene.materials.size() ? scene.materials[id] : scene.materials.back();
+}
 
 // An object's hit with what is known of it.
 struct FoundHit {
@@ -49,5 +53,11 @@ FoundHit find_surface(const ShadeScene& scene, const Ray& ray, const Hit& hit);
 
 // What is left after this way through a medium (Beer and Lambert's law).
 glm::vec3 passed(const ShadeScene& scene, MaterialId medium, float distance);
+
+// What a ray sees that hits nothing: see environment_colour.
+inline glm::vec3 sky_colour(const ShadeScene& scene, const glm::vec3& direction, float spread) {
+    if (scene.plain_sky) return scene.scene->background;
+    return environment_colour(*scene.scene, direction, spread);
+}
 
 }  // namespace raypick

@@ -2,8 +2,6 @@
 
 #include "tracer/shade/local_light.h"
 
-#include <glm/geometric.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -58,20 +56,6 @@ private:
 };
 
 }  // namespace
-
-bool faces(const ShadingPoint& point, const LightSample& light) {
-    return light.colour != glm::vec3(0.0f) && glm::dot(point.normal, light.direction) > 0.0f;
-}
-
-bool shades_itself(const ShadingPoint& point, const LightSample& light) {
-    return !(glm::dot(point.geometric, light.direction) > 0.0f);
-}
-
-Ray shadow_ray(const ShadingPoint& point, const LightSample& light) {
-    Ray ray = leaving(point, light.direction);
-    ray.t_max = light.distance * static_cast<float>(1.0 - 2.0 * kTieGap);
-    return ray;
-}
 
 glm::vec3 lit_by(const ShadingPoint& point, const LightSample& light, const glm::vec3& share) {
     return share * light.colour *

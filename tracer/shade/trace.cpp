@@ -50,7 +50,7 @@ private:
     // What comes along a ray that hits nothing.
     [[nodiscard]] glm::vec3 beyond(const Ray& ray, const Path& path) const {
         return passed(scene_, path.interior.medium(*scene_.scene), ray.t_max) *
-               environment_colour(*scene_.scene, ray.direction, path.cone.spread);
+               sky_colour(scene_, ray.direction, path.cone.spread);
     }
 
     // Goes on through surfaces that are hidden inside of glass of a higher priority.
