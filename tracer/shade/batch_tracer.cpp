@@ -114,6 +114,8 @@ void BatchTracer::follow_portion(const Step& step, std::span<const std::uint32_t
 // higher priority, and sends on the next generation.
 void BatchTracer::find_points(const Step& step) {
     points_.clear();
+    materials_.clear();
+    materials_.reserve(kPortion + 1);  // points hold on to them
     for (int hidden = 0; !at_work_.empty(); ++hidden) {
         if (step.job.stop.stop_requested()) return;
         intersect_groups(step.job);
@@ -173,12 +175,14 @@ bool BatchTracer::arrive(const Step& step, int hidden, std::size_t i) {
     }
     if (boundary.crossing) step.at.put_inside(path, boundary.crossing->before);
     path.weight *= largest(path.passed);
-    points_.push_back({at_work_[i], shading_point(scene, found, ray.direction, path.cone.width)});
-    const LitPoint& lit = points_.back();
-    if (step.depth == 1) step.job.results[path.parent].normal = lit.point.normal;
-    path.colour = own_light(scene, lit.point);
+    SurfaceMaterial* with_maps = found.material.has_maps ? &materials_.emplace_back() : nullptr;
+    const ShadingPoint point =
+        shading_point(scene, found, ray.direction, path.cone.width, with_maps);
+    points_.push_back({at_work_[i], lit_point(point)});
+    if (step.depth == 1) step.job.results[path.parent].normal = point.normal;
+    path.colour = own_light(scene, point);
     if (found.material.branches && step.depth < scene.settings.depth) {
-        send_branches(step, lit, boundary);
+        send_branches(step, at_work_[i], point, boundary);
     }
     return false;
 }
@@ -192,17 +196,18 @@ void BatchTracer::see_sky(const Step& step, PathRay& path, const Ray& ray) {
 }
 
 // Rays of the next generation.
-void BatchTracer::send_branches(const Step& step, const LitPoint& from, const Boundary& boundary) {
-    const PathRay& path = step.at.rays[from.ray];
+void BatchTracer::send_branches(const Step& step, std::uint32_t from, const ShadingPoint& point,
+                                const Boundary& boundary) {
+    const PathRay& path = step.at.rays[from];
     const ShadeScene& scene = step.job.scene;
-    const Branches branches = branches_at(scene, from.point, boundary, path.weight);
+    const Branches branches = branches_at(scene, point, boundary, path.weight);
     for (std::size_t i = 0; i < branches.count; ++i) {
         const Branch& branch = branches.branch[i];
         count_branch(step.job.counts, branch.kind, step.depth + 1);
         PathRay& onwards = step.next.rays.emplace_back();
-        onwards.ray = leaving(from.point, branch.direction);
+        onwards.ray = leaving(point, branch.direction);
         onwards.share = branch.share;
-        onwards.parent = from.ray;
+        onwards.parent = from;
         onwards.cone = path.cone;
         onwards.weight = branch.weight;
         onwards.seed = branch_seed(scene, path.seed, branch.kind);
@@ -224,16 +229,16 @@ void BatchTracer::light_points(const Step& step) {
             light_points_by(step, light, sample);
         }
     }
-    for (const LitPoint& lit : points_)
-        step.at.rays[lit.ray].colour *= lit.point.material.opacity;
+    for (const RayEnd& end : points_)
+        step.at.rays[end.ray].colour *= end.point.material->opacity;
 }
 
 void BatchTracer::light_points_by(const Step& step, std::size_t light, int sample) {
     gather_light(step, light, sample);
     if (!step.job.scene.settings.shadows) {
         for (const Arriving& arriving : arriving_) {
-            const LitPoint& lit = points_[arriving.point];
-            step.at.rays[lit.ray].colour += lit_by(lit.point, arriving.light, glm::vec3(1.0f));
+            const RayEnd& end = points_[arriving.point];
+            step.at.rays[end.ray].colour += lit_by(end.point, arriving.light, glm::vec3(1.0f));
         }
         return;
     }
@@ -244,8 +249,8 @@ void BatchTracer::light_points_by(const Step& step, std::size_t light, int sampl
             ++blocked;
             continue;
         }
-        const LitPoint& lit = points_[arriving_[i].point];
-        step.at.rays[lit.ray].colour += lit_by(lit.point, arriving_[i].light, shares_[i]);
+        const RayEnd& end = points_[arriving_[i].point];
+        step.at.rays[end.ray].colour += lit_by(end.point, arriving_[i].light, shares_[i]);
     }
     step.job.counts.shadow_blocked += blocked;
 }
@@ -257,9 +262,10 @@ void BatchTracer::gather_light(const Step& step, std::size_t light, int sample) 
     arriving_.clear();
     shadow_rays_.clear();
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
-        const ShadingPoint& point = points_[i].point;
-        const std::uint64_t seed = light_seed(scene, step.at.rays[points_[i].ray].seed, light);
-        const LightSample arriving = light_sample(source, point.surface.position, sample, seed);
+        const LitPoint& point = points_[i].point;
+        const std::uint64_t seed =
+            source.side > 1 ? light_seed(scene, step.at.rays[points_[i].ray].seed, light) : 0;
+        const LightSample arriving = light_sample(source, point.position, sample, seed);
         if (!faces(point, arriving)) continue;
         if (scene.settings.shadows) {
             if (shades_itself(point, arriving)) continue;

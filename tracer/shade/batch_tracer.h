@@ -6,6 +6,7 @@
 #include "tracer/shade/branches.h"
 #include "tracer/shade/eye_ray.h"
 #include "tracer/shade/light_sample.h"
+#include "tracer/shade/lit_point.h"
 #include "tracer/shade/ray_counts.h"
 #include "tracer/shade/shade_scene.h"
 
@@ -61,12 +62,12 @@ private:
         void put_inside(PathRay& ray, const Interior& interior);
     };
 
-    // A lit point at the end of a ray.
-    struct LitPoint {
+    // The end of a ray.
+    struct RayEnd {
         std::uint32_t ray = 0;
-        ShadingPoint point;
+        LitPoint point;
     };
-    // A light's sample on its way to a point, of points_.
+    // A light's sample on its way to one of points_.
     struct Arriving {
         std::uint32_t point = 0;
         LightSample light;
@@ -96,7 +97,8 @@ private:
     void note_first_hits(const Job& job);
     bool arrive(const Step& step, int hidden, std::size_t i);
     void see_sky(const Step& step, PathRay& path, const Ray& ray);
-    void send_branches(const Step& step, const LitPoint& from, const Boundary& boundary);
+    void send_branches(const Step& step, std::uint32_t from, const ShadingPoint& point,
+                       const Boundary& boundary);
     void light_points(const Step& step);
     void light_points_by(const Step& step, std::size_t light, int sample);
     void gather_light(const Step& step, std::size_t light, int sample);
@@ -109,7 +111,8 @@ private:
     std::vector<std::uint8_t> directions_;
     std::vector<Ray> rays_;
     std::vector<Hit> hits_;
-    std::vector<LitPoint> points_;
+    std::vector<RayEnd> points_;
+    std::vector<SurfaceMaterial> materials_;  // with maps, of some of the points
     std::vector<Arriving> arriving_;
     std::vector<Ray> shadow_rays_;
     std::vector<std::uint8_t> blocked_;

@@ -25,23 +25,22 @@ Boundary boundary_of_body(const ShadeScene& scene, const FoundHit& found, const 
 }
 
 ShadingPoint shading_point(const ShadeScene& scene, const FoundHit& found,
-                           const glm::vec3& incoming, float width) {
+                           const glm::vec3& incoming, float width, SurfaceMaterial* with_maps) {
     const SurfacePoint& surface = found.surface;
+    const Material& kind = *found.material.material;
     const float side = surface.front_face ? 1.0f : -1.0f;
-    ShadingPoint point;
-    point.surface = surface;
-    point.kind = found.material.material;
-    point.geometric = side * surface.geometric_normal;
-    point.incoming = incoming;
-    if (found.material.has_maps) {
-        const Scene& world = *scene.scene;
-        point.material = textured(world, *point.kind, surface, incoming, width);
-        point.normal = side * mapped_normal(world, *point.kind, surface, incoming, width);
-    } else {
-        point.material = found.material.plain;
-        point.normal = side * surface.shading_normal;
+    const glm::vec3 geometric = side * surface.geometric_normal;
+    const glm::vec3 outside = offset_origin(surface, geometric);
+    if (!found.material.has_maps) {
+        return {surface,  kind,   found.material.plain, side * surface.shading_normal, geometric,
+                incoming, outside};
     }
-    return point;
+    const Scene& world = *scene.scene;
+    *with_maps = textured(world, kind, surface, incoming, width);
+    return {surface,    kind,
+            *with_maps, side * mapped_normal(world, kind, surface, incoming, width),
+            geometric,  incoming,
+            outside};
 }
 
 }  // namespace raypick

@@ -35,16 +35,18 @@ inline Boundary boundary_at(const ShadeScene& scene, const FoundHit& found, cons
 
 // A hit as the shading sees it: normals turned to the side the ray came from.
 struct ShadingPoint {
-    SurfacePoint surface;
-    const Material* kind = nullptr;  // before its maps
-    SurfaceMaterial material;        // after them
-    glm::vec3 normal{0.0f};          // shading normal
-    glm::vec3 geometric{0.0f};       // geometric normal
-    glm::vec3 incoming{0.0f};        // unit direction of the ray that arrived here
+    const SurfacePoint& surface;
+    const Material& kind;             // before its maps
+    const SurfaceMaterial& material;  // after them
+    glm::vec3 normal;                 // shading normal
+    glm::vec3 geometric;              // geometric normal
+    glm::vec3 incoming;               // unit direction of the ray that arrived here
+    glm::vec3 outside;                // origin of rays that leave on the side of `geometric`
 };
-// `width`: of the ray's cone there.
+// `width`: of the ray's cone there. `with_maps` is where a material with maps goes, for others it
+// may be null; it and `found` must outlive the result.
 ShadingPoint shading_point(const ShadeScene& scene, const FoundHit& found,
-                           const glm::vec3& incoming, float width);
+                           const glm::vec3& incoming, float width, SurfaceMaterial* with_maps);
 
 // What the surface gives off by itself: its own glow, and the ambient light on it.
 inline glm::vec3 own_light(const ShadeScene& scene, const ShadingPoint& point) {
@@ -53,6 +55,7 @@ inline glm::vec3 own_light(const ShadeScene& scene, const ShadingPoint& point) {
 
 // A ray from the point, off its surface.
 inline Ray leaving(const ShadingPoint& point, const glm::vec3& direction) {
+    if (glm::dot(point.geometric, direction) > 0.0f) return Ray{point.outside, direction};
     return Ray{offset_origin(point.surface, direction), direction};
 }
 

@@ -51,12 +51,12 @@ struct Split {
 
 // Of a dielectric that nothing enters: a coat of varnish.
 float fresnel_outside(const ShadingPoint& point, float cosine) {
-    const float ior = point.kind->ior;
+    const float ior = point.kind.ior;
     return fresnel_dielectric(cosine, point.surface.front_face ? 1.0f / ior : ior);
 }
 
 void apply_fresnel(const ShadingPoint& point, const Boundary& boundary, Split& split) {
-    const Material& kind = *point.kind;
+    const Material& kind = point.kind;
     const float cosine = std::clamp(-glm::dot(point.incoming, point.normal), 0.0f, 1.0f);
     if (kind.reflectance == Reflectance::dielectric) {
         const float f = kind.thin_walled    ? fresnel_sheet(cosine, 1.0f / kind.ior)
@@ -72,13 +72,13 @@ void apply_fresnel(const ShadingPoint& point, const Boundary& boundary, Split& s
 Split split_at(const RenderSettings& settings, const ShadingPoint& point,
                const Boundary& boundary) {
     Split split;
-    const bool refracts = settings.refractions && point.kind->transmits();
+    const bool refracts = settings.refractions && point.kind.transmits();
     if (refracts) {
         split.through = refract_direction(point, boundary.eta);
         split.transmitted = point.material.transmit;
     }
     if (settings.reflections) split.mirrored = point.material.reflect;
-    const bool constant = point.kind->reflectance == Reflectance::constant;
+    const bool constant = point.kind.reflectance == Reflectance::constant;
     if (!constant) apply_fresnel(point, boundary, split);
     if (refracts && !split.through) {  // total internal reflection
         if (constant || !settings.reflections) split.mirrored += split.transmitted;
@@ -112,7 +112,7 @@ Branches branches_at(const ShadeScene& scene, const ShadingPoint& point, const B
                      float weight) {
     const RenderSettings& settings = scene.settings;
     const float opacity = point.material.opacity;
-    const Material& kind = *point.kind;
+    const Material& kind = point.kind;
     const bool transmits = settings.refractions && kind.transmits();
     const bool mirrors = settings.reflections && (kind.reflects() || kind.transmits());
     Collector collector(settings.cutoff, weight);

@@ -15,21 +15,6 @@ namespace raypick {
 
 namespace {
 
-double falloff(const Attenuation& a, double distance) {
-    return 1.0 / (a.constant + distance * (a.linear + distance * a.quadratic));
-}
-
-// A point of a light that sends `share` of the colour. A lit point that coincides with the light
-// has no direction to it and gets nothing.
-LightSample towards(const glm::dvec3& position, const glm::dvec3& from, const glm::vec3& colour,
-                    const Attenuation& attenuation, double share) {
-    const glm::dvec3 offset = position - from;
-    const double distance = glm::length(offset);
-    if (!(distance > 0.0)) return {};
-    return {glm::vec3(offset / distance), static_cast<float>(distance),
-            glm::vec3(glm::dvec3(colour) * (share * falloff(attenuation, distance)))};
-}
-
 // How much of a spot's light leaves in a unit direction. With equal angles the edge is sharp.
 double cone_share(const PreparedLight& spot, const glm::dvec3& direction) {
     const double cosine = glm::dot(spot.direction, direction);
@@ -54,8 +39,8 @@ LightSample from_spot(const PreparedLight& light, const glm::dvec3& from) {
     const glm::dvec3 offset = from - light.position;
     const double distance = glm::length(offset);
     if (!(distance > 0.0)) return {};
-    return towards(light.position, from, light.colour, light.attenuation,
-                   cone_share(light, offset / distance));
+    return light_towards(light.position, from, light.colour, light.attenuation,
+                         cone_share(light, offset / distance));
 }
 
 LightSample from_sphere(const PreparedLight& light, const glm::dvec3& from, const glm::dvec2& at) {
@@ -64,8 +49,8 @@ LightSample from_sphere(const PreparedLight& light, const glm::dvec3& from, cons
     if (!(distance > 0.0)) return {};
     const PlaneAxes axes = axes_across(offset / distance);
     const glm::dvec2 disk = light.radius * disk_from_square(at);
-    return towards(light.position + disk.x * axes.u + disk.y * axes.v, from, light.colour,
-                   light.attenuation, 1.0 / light.count());
+    return light_towards(light.position + disk.x * axes.u + disk.y * axes.v, from, light.colour,
+                         light.attenuation, 1.0 / light.count());
 }
 
 struct Prepare {
@@ -122,22 +107,20 @@ PreparedLight prepared(const Light& light) {
     return std::visit(Prepare{}, light);
 }
 
-LightSample light_sample(const PreparedLight& light, const glm::dvec3& from, int index,
-                         std::uint64_t seed) {
+LightSample spread_light_sample(const PreparedLight& light, const glm::dvec3& from, int index,
+                                std::uint64_t seed) {
     switch (light.kind) {
         case PreparedLight::Kind::point:
-            return towards(light.position, from, light.colour, light.attenuation, 1.0);
         case PreparedLight::Kind::directional:
-            return {-glm::vec3(light.direction), std::numeric_limits<float>::infinity(),
-                    light.colour};
+            return light_sample(light, from, index, seed);
         case PreparedLight::Kind::spot:
             return from_spot(light, from);
         case PreparedLight::Kind::sphere:
             return from_sphere(light, from, stratified(index, light.side, seed));
         case PreparedLight::Kind::rectangle: {
             const glm::dvec2 at = stratified(index, light.side, seed);
-            return towards(light.position + at.x * light.edge_u + at.y * light.edge_v, from,
-                           light.colour, light.attenuation, 1.0 / light.count());
+            return light_towards(light.position + at.x * light.edge_u + at.y * light.edge_v, from,
+                                 light.colour, light.attenuation, 1.0 / light.count());
         }
     }
     return {};

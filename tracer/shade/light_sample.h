@@ -5,6 +5,7 @@
 
 #include "tracer/scene/light.h"
 
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstdint>
@@ -43,8 +44,35 @@ PreparedLight prepared(const Light& light);
 // the sample lies at random in cell (index % n, index / n), and its colour is 1 / n^2 of the
 // light's. A single sample is at the centre; only others depend on `seed`, each on numbers of its
 // own.
-LightSample light_sample(const PreparedLight& light, const glm::dvec3& from, int index,
-                         std::uint64_t seed);
+inline LightSample light_sample(const PreparedLight& light, const glm::dvec3& from, int index,
+                                std::uint64_t seed);
+
+// From a point of a light that sends `share` of the colour. A lit point that coincides with it has
+// no direction to it and gets nothing.
+inline LightSample light_towards(const glm::dvec3& position, const glm::dvec3& from,
+                                 const glm::vec3& colour, const Attenuation& a, double share) {
+    const glm::dvec3 offset = position - from;
+    const double distance = glm::length(offset);
+    if (!(distance > 0.0)) return {};
+    const double falloff = 1.0 / (a.constant + distance * (a.linear + distance * a.quadratic));
+    return {glm::vec3(offset / distance), static_cast<float>(distance),
+            glm::vec3(glm::dvec3(colour) * (share * falloff))};
+}
+
+// Of lights in a cone or with an area.
+LightSample spread_light_sample(const PreparedLight& light, const glm::dvec3& from, int index,
+                                std::uint64_t seed);
+
+inline LightSample light_sample(const PreparedLight& light, const glm::dvec3& from, int index,
+                                std::uint64_t seed) {
+    if (light.kind == PreparedLight::Kind::point) {
+        return light_towards(light.position, from, light.colour, light.attenuation, 1.0);
+    }
+    if (light.kind == PreparedLight::Kind::directional) {
+        return {-glm::vec3(light.direction), std::numeric_limits<float>::infinity(), light.colour};
+    }
+    return spread_light_sample(light, from, index, seed);
+}
 
 // Two unit vectors perpendicular to a unit vector and to each other. Source: Duff et al., "Building
 // an Orthonormal Basis, Revisited", JCGT 6(1), 2017.

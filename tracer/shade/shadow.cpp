@@ -1,7 +1,5 @@
 #include "tracer/shade/shadow.h"
 
-#include "tracer/shade/local_light.h"
-
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -56,11 +54,6 @@ private:
 };
 
 }  // namespace
-
-glm::vec3 lit_by(const ShadingPoint& point, const LightSample& light, const glm::vec3& share) {
-    return share * light.colour *
-           local_light(point.material, point.normal, light.direction, -point.incoming);
-}
 
 glm::vec3 transmittance(const ShadeScene& scene, const Ray& ray, const Interior* interior,
                         float width) {

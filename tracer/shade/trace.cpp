@@ -1,6 +1,7 @@
 #include "tracer/shade/trace.h"
 
 #include "tracer/shade/branches.h"
+#include "tracer/shade/lit_point.h"
 #include "tracer/shade/shadow.h"
 
 namespace raypick {
@@ -64,8 +65,9 @@ private:
             if (boundary.is_there || hidden == kMostHidden) {
                 if (boundary.crossing) path.interior = boundary.crossing->before;
                 path.weight *= largest(share);
+                SurfaceMaterial with_maps;
                 const ShadingPoint point =
-                    shading_point(scene_, found, ray.direction, path.cone.width);
+                    shading_point(scene_, found, ray.direction, path.cone.width, &with_maps);
                 if (normal != nullptr) *normal = point.normal;
                 return share * shade(point, boundary, path);
             }
@@ -104,22 +106,23 @@ private:
     }
 
     glm::vec3 local(const ShadingPoint& point, const Path& path) {
+        const LitPoint lit = lit_point(point);
         glm::vec3 colour = own_light(scene_, point);
         for (std::size_t l = 0; l < scene_.lights.size(); ++l) {
             const PreparedLight& light = scene_.lights[l];
             const std::uint64_t seed = light_seed(scene_, path.seed, l);
             for (int i = 0; i < light.count(); ++i) {
-                const LightSample sample = light_sample(light, point.surface.position, i, seed);
-                if (!faces(point, sample)) continue;
-                const glm::vec3 share = unshadowed(point, path, sample);
-                if (share != glm::vec3(0.0f)) colour += lit_by(point, sample, share);
+                const LightSample sample = light_sample(light, lit.position, i, seed);
+                if (!faces(lit, sample)) continue;
+                const glm::vec3 share = unshadowed(lit, path, sample);
+                if (share != glm::vec3(0.0f)) colour += lit_by(lit, sample, share);
             }
         }
         return colour;
     }
 
     // The share of the light that arrives.
-    glm::vec3 unshadowed(const ShadingPoint& point, const Path& path, const LightSample& light) {
+    glm::vec3 unshadowed(const LitPoint& point, const Path& path, const LightSample& light) {
         if (!scene_.settings.shadows) return glm::vec3(1.0f);
         if (shades_itself(point, light)) return glm::vec3(0.0f);
         count_shadows(counts_, 1, path.depth);
