@@ -120,6 +120,8 @@ void BatchTracer::find_points(const Step& step) {
         if (step.job.stop.stop_requested()) return;
         intersect_groups(step.job);
         if (step.depth == 1 && hidden == 0) note_first_hits(step.job);
+        found_.resize(rays_.size());
+        find_surfaces(step.job.scene, rays_, hits_, found_, triangles_);
         std::size_t left = 0;
         for (std::size_t i = 0; i < at_work_.size(); ++i) {
             if (!arrive(step, hidden, i)) continue;
@@ -164,7 +166,7 @@ bool BatchTracer::arrive(const Step& step, int hidden, std::size_t i) {
         see_sky(step, path, ray);
         return false;
     }
-    const FoundHit found = find_surface(scene, ray, hit);
+    const FoundHit& found = found_[i];
     const Boundary boundary = boundary_at(scene, found, hit, step.at.interior_of(path));
     if (boundary.medium != kNoMaterial) path.passed *= passed(scene, boundary.medium, hit.t);
     path.cone.width = path.cone.at(hit.t);
@@ -175,13 +177,13 @@ bool BatchTracer::arrive(const Step& step, int hidden, std::size_t i) {
     }
     if (boundary.crossing) step.at.put_inside(path, boundary.crossing->before);
     path.weight *= largest(path.passed);
-    SurfaceMaterial* with_maps = found.material.has_maps ? &materials_.emplace_back() : nullptr;
+    SurfaceMaterial* with_maps = found.material->has_maps ? &materials_.emplace_back() : nullptr;
     const ShadingPoint point =
         shading_point(scene, found, ray.direction, path.cone.width, with_maps);
     points_.push_back({at_work_[i], lit_point(point)});
     if (step.depth == 1) step.job.results[path.parent].normal = point.normal;
     path.colour = own_light(scene, point);
-    if (found.material.branches && step.depth < scene.settings.depth) {
+    if (found.material->branches && step.depth < scene.settings.depth) {
         send_branches(step, at_work_[i], point, boundary);
     }
     return false;

@@ -111,6 +111,8 @@ private:
     std::vector<std::uint8_t> directions_;
     std::vector<Ray> rays_;
     std::vector<Hit> hits_;
+    std::vector<FoundHit> found_;
+    TriangleSurfaces triangles_;
     std::vector<RayEnd> points_;
     std::vector<SurfaceMaterial> materials_;  // with maps, of some of the points
     std::vector<Arriving> arriving_;

@@ -25,7 +25,7 @@ Boundary boundary_of_body(const ShadeScene& scene, const FoundHit& found, const 
                           const Interior* interior);
 inline Boundary boundary_at(const ShadeScene& scene, const FoundHit& found, const Hit& hit,
                             const Interior* interior) {
-    if (scene.has_bodies && found.material.fills) {
+    if (scene.has_bodies && found.material->fills) {
         return boundary_of_body(scene, found, hit, interior);
     }
     Boundary boundary;

@@ -25,6 +25,16 @@ PreparedMaterial prepared(const Material& material, const RenderSettings& settin
     return result;
 }
 
+// Notes what was hit, and says what is known of it.
+HitObject hit_object(const ShadeScene& scene, const Hit& hit, FoundHit& found) {
+    const std::size_t index = object_index(*scene.scene, hit.object);
+    const Object& object = scene.scene->objects[index];
+    const MaterialId id = material_id(*scene.scene, object, hit.primitive);
+    found.object = &object;
+    found.material = &prepared_material(scene, id);
+    return {object, scene.accel->object_from_world(index), id, found.material->has_maps};
+}
+
 }  // namespace
 
 ShadeScene shade_scene(const Accel& accel, std::span<const Light> lights,
@@ -49,12 +59,24 @@ ShadeScene shade_scene(const Accel& accel, std::span<const Light> lights,
 }
 
 FoundHit find_surface(const ShadeScene& scene, const Ray& ray, const Hit& hit) {
-    const std::size_t index = object_index(*scene.scene, hit.object);
-    const Object& object = scene.scene->objects[index];
-    const MaterialId id = material_id(*scene.scene, object, hit.primitive);
-    const PreparedMaterial& material = prepared_material(scene, id);
-    const HitObject at{object, scene.accel->object_from_world(index), id, material.has_maps};
-    return {object, material, surface_point(*scene.scene, at, ray, hit)};
+    FoundHit found;
+    found.surface = surface_point(*scene.scene, hit_object(scene, hit, found), ray, hit);
+    return found;
+}
+
+void find_surfaces(const ShadeScene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
+                   std::span<FoundHit> found, TriangleSurfaces& triangles) {
+    triangles.clear();
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        if (!hits[i].valid()) continue;
+        const HitObject at = hit_object(scene, hits[i], found[i]);
+        if (TriangleSurfaces::takes(at)) {
+            triangles.add(*scene.scene, at, rays[i], hits[i], found[i].surface);
+        } else {
+            found[i].surface = surface_point(*scene.scene, at, rays[i], hits[i]);
+        }
+    }
+    triangles.find(*scene.scene);
 }
 
 glm::vec3 passed(const ShadeScene& scene, MaterialId medium, float distance) {

@@ -3,6 +3,7 @@
 
 #include "tracer/accel/accel.h"
 #include "tracer/accel/surface.h"
+#include "tracer/accel/triangle_surfaces.h"
 #include "tracer/shade/light_sample.h"
 #include "tracer/shade/settings.h"
 #include "tracer/shade/textured.h"
@@ -45,11 +46,14 @@ inline const PreparedMaterial& prepared_material(const ShadeScene& scene, Materi
 
 // An object's hit with what is known of it.
 struct FoundHit {
-    const Object& object;
-    const PreparedMaterial& material;
+    const Object* object = nullptr;
+    const PreparedMaterial* material = nullptr;
     SurfacePoint surface;
 };
 FoundHit find_surface(const ShadeScene& scene, const Ray& ray, const Hit& hit);
+// The same of each ray that hit something; others leave found[i] as it is. As long as the rays.
+void find_surfaces(const ShadeScene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
+                   std::span<FoundHit> found, TriangleSurfaces& triangles);
 
 // What is left after this way through a medium (Beer and Lambert's law).
 glm::vec3 passed(const ShadeScene& scene, MaterialId medium, float distance);

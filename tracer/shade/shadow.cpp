@@ -22,9 +22,9 @@ public:
         const Scene& world = *scene_.scene;
         bool there = true;
         MaterialId medium = interior_.medium(world);
-        if (found.material.fills) {
+        if (found.material->fills) {
             const Crossing crossing =
-                cross_surface(world, interior_, body_of(found.object, hit), found.surface.material,
+                cross_surface(world, interior_, body_of(*found.object, hit), found.surface.material,
                               found.surface.front_face);
             medium = crossing.from;
             interior_ = crossing.after;
@@ -34,7 +34,7 @@ public:
         reached_ = hit.t;
         if (!there) return;
         const SurfaceMaterial look =
-            textured(world, *found.material.material, found.surface, ray_.direction, width_);
+            textured(world, *found.material->material, found.surface, ray_.direction, width_);
         share_ *= glm::vec3(1.0f - look.opacity) + look.opacity * look.transmit;
     }
 

@@ -1,0 +1,254 @@
+#include "tracer/accel/triangle_surfaces.h"
+
+#include <limits>
+#include <variant>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "tracer/accel/triangle_surfaces.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace raypick::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// The steps are those of surface.cpp and local_point.cpp one by one, in double, so that no bit
+// differs.
+class TriangleKernel {
+public:
+    explicit TriangleKernel(const TriangleSurfaces::Arrays& arrays) : arrays_(arrays) {}
+
+    void run() const {
+        for (std::size_t i = 0; i < arrays_.count; i += hn::Lanes(kDoubles))
+            step(i);
+    }
+
+private:
+    using Doubles = hn::ScalableTag<double>;
+    using Floats = hn::Rebind<float, Doubles>;
+    using V = hn::Vec<Doubles>;
+    static constexpr Doubles kDoubles{};
+    static constexpr Floats kFloats{};
+
+    struct V3 {
+        V x;
+        V y;
+        V z;
+    };
+
+    static HWY_INLINE V number(double x) { return hn::Set(kDoubles, x); }
+    static HWY_INLINE V3 minus(const V3& a, const V3& b) {
+        return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+    }
+    static HWY_INLINE V3 plus(const V3& a, const V3& b) {
+        return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+    }
+    static HWY_INLINE V3 times(V s, const V3& a) {
+        return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
+    }
+    static HWY_INLINE V dot(const V3& a, const V3& b) {
+        return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+    }
+    static HWY_INLINE V3 cross(const V3& a, const V3& b) {
+        return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)),
+                hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
+                hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
+    }
+    static HWY_INLINE V3 unit(const V3& a) {
+        return times(hn::Div(number(1.0), hn::Sqrt(dot(a, a))), a);
+    }
+    static HWY_INLINE V3 size(const V3& a) { return {hn::Abs(a.x), hn::Abs(a.y), hn::Abs(a.z)}; }
+    static HWY_INLINE V largest(const V3& a) {
+        const V3 s = size(a);
+        return hn::Max(hn::Max(s.x, s.y), s.z);
+    }
+    static HWY_INLINE V3 blend(const V3& weights, const V3& a, const V3& b, const V3& c) {
+        return plus(plus(times(weights.x, a), times(weights.y, b)), times(weights.z, c));
+    }
+
+    HWY_INLINE V load(std::size_t array, std::size_t i) const {
+        return hn::PromoteTo(kDoubles, hn::LoadU(kFloats, arrays_.in[array] + i));
+    }
+    HWY_INLINE V3 load3(std::size_t first, std::size_t i) const {
+        return {load(first, i), load(first + 1, i), load(first + 2, i)};
+    }
+    HWY_INLINE void store(std::size_t first, std::size_t i, const V3& a, float more = 0.0f) const {
+        const auto put = [&](std::size_t array, V v) HWY_ATTR {
+            const auto rounded = hn::DemoteTo(kFloats, v);
+            hn::StoreU(hn::Add(rounded, hn::Set(kFloats, more)), kFloats, arrays_.out[array] + i);
+        };
+        put(first, a.x);
+        put(first + 1, a.y);
+        put(first + 2, a.z);
+    }
+
+    // exact_weights of local_point.cpp.
+    static HWY_INLINE V3 weights(const V3& q, const V3& edge_b, const V3& edge_c, V scale, V u,
+                                 V v) {
+        const V exact_u = hn::Mul(dot(q, edge_c), scale);
+        const V exact_v = hn::Mul(hn::Neg(dot(q, edge_b)), scale);
+        const V gap = number(1e-3);
+        const auto near = hn::And(hn::Lt(hn::Abs(hn::Sub(exact_u, u)), gap),
+                                  hn::Lt(hn::Abs(hn::Sub(exact_v, v)), gap));
+        const V at_u = hn::IfThenElse(near, exact_u, u);
+        const V at_v = hn::IfThenElse(near, exact_v, v);
+        return {hn::Sub(hn::Sub(number(1.0), at_u), at_v), at_u, at_v};
+    }
+
+    // How far beyond the rim the point lies: Rim::is_far of local_point.cpp.
+    static HWY_INLINE V room(const V3& w, const V3& edge_b, const V3& edge_c, const V3& normal,
+                             const V3& met) {
+        const V away = largest(met);
+        const V rim = hn::Mul(
+            number(64.0), hn::Add(hn::Mul(away, number(0x1p-24)), hn::Mul(away, number(0x1p-47))));
+        const V3 across = minus(edge_c, edge_b);
+        const V longest =
+            hn::Max(hn::Max(dot(edge_b, edge_b), dot(edge_c, edge_c)), dot(across, across));
+        const V least = hn::Min(hn::Min(w.x, w.y), w.z);
+        const V wanted = hn::Mul(hn::Mul(hn::Mul(number(1.0001), rim), rim), longest);
+        const V have = hn::Mul(hn::Mul(least, least), dot(normal, normal));
+        return hn::IfThenElseZero(hn::Gt(least, number(0.0)), hn::Sub(have, wanted));
+    }
+
+    HWY_INLINE void store_normals(std::size_t i, const V3& normal, V u, V v) const {
+        using In = TriangleSurfaces;
+        store(In::kGeometric, i, unit(normal));
+        const V3 smooth = blend({hn::Sub(hn::Sub(number(1.0), u), v), u, v}, load3(In::kNormals, i),
+                                load3(In::kNormals + 3, i), load3(In::kNormals + 6, i));
+        const auto is_smooth = hn::Gt(dot(smooth, smooth), number(1e-12));
+        const auto turns = hn::Lt(dot(smooth, normal), number(0.0));
+        const auto choose = [&](V of_smooth, V of_flat) HWY_ATTR {
+            const V turned = hn::IfThenElse(turns, hn::Neg(of_smooth), of_smooth);
+            return hn::IfThenElse(is_smooth, turned, of_flat);
+        };
+        store(In::kShading, i,
+              unit({choose(smooth.x, normal.x), choose(smooth.y, normal.y),
+                    choose(smooth.z, normal.z)}));
+    }
+
+    HWY_INLINE void step(std::size_t i) const {
+        using In = TriangleSurfaces;
+        const V3 a = load3(In::kCorners, i);
+        const V3 b = load3(In::kCorners + 3, i);
+        const V3 c = load3(In::kCorners + 6, i);
+        const V3 origin = load3(In::kOrigin, i);
+        const V3 direction = load3(In::kDirection, i);
+        const V u = load(In::kU, i);
+        const V v = load(In::kV, i);
+        const V3 edge_b = minus(b, a);
+        const V3 edge_c = minus(c, a);
+        const V3 normal = cross(edge_b, edge_c);
+        const V3 q = cross(minus(origin, a), direction);
+        const V scale = hn::Div(number(-1.0), dot(normal, direction));
+        const V3 w = weights(q, edge_b, edge_c, scale, u, v);
+        const V3 met = plus(origin, times(load(In::kT, i), direction));
+        hn::StoreU(room(w, edge_b, edge_c, normal, met), kDoubles, arrays_.room + i);
+
+        const V3 position = blend(w, a, b, c);
+        const V magnitude = hn::Max(hn::Max(largest(a), largest(b)), largest(c));
+        const V3 reach = size(position);
+        const auto bound = [&](V along) HWY_ATTR {
+            return hn::Add(hn::Mul(along, number(0x1p-24)),
+                           hn::Mul(hn::Add(along, magnitude), number(0x1p-47)));
+        };
+        store(In::kPosition, i, position);
+        store(In::kError, i, {bound(reach.x), bound(reach.y), bound(reach.z)},
+              std::numeric_limits<float>::min());
+        store_normals(i, normal, u, v);
+    }
+
+    const TriangleSurfaces::Arrays& arrays_;
+};
+
+void find_triangles(const TriangleSurfaces::Arrays& arrays) {
+    TriangleKernel(arrays).run();
+}
+
+}  // namespace raypick::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace raypick {
+
+HWY_EXPORT(find_triangles);
+
+bool TriangleSurfaces::takes(const HitObject& at) {
+    return !at.textured && std::holds_alternative<MeshInstance>(at.object.shape) &&
+           at.object_from_world.is_identity();
+}
+
+void TriangleSurfaces::grow() {
+    constexpr std::size_t kMostLanes = 64;  // wider than any vector
+    const std::size_t room = 2 * wanted_.size() + kMostLanes;
+    wanted_.resize(room);
+    room_.resize(room + kMostLanes);
+    for (std::vector<float>& array : in_)
+        array.resize(room + kMostLanes);
+    for (std::vector<float>& array : out_)
+        array.resize(room + kMostLanes);
+}
+
+void TriangleSurfaces::put(std::size_t first, const glm::vec3& v) {
+    in_[first][count_] = v.x;
+    in_[first + 1][count_] = v.y;
+    in_[first + 2][count_] = v.z;
+}
+
+glm::vec3 TriangleSurfaces::got(std::size_t first, std::size_t i) const {
+    return {out_[first][i], out_[first + 1][i], out_[first + 2][i]};
+}
+
+void TriangleSurfaces::add(const Scene& scene, const HitObject& at, const Ray& ray, const Hit& hit,
+                           SurfacePoint& result) {
+    if (count_ == wanted_.size()) grow();
+    const Mesh& mesh = scene.meshes[std::get<MeshInstance>(at.object.shape).mesh];
+    const glm::uvec3& corner = mesh.triangles[hit.primitive];
+    const bool smooth = !mesh.normals.empty();
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t vertex = corner[static_cast<int>(k)];
+        put(kCorners + 3 * k, mesh.positions[vertex]);
+        put(kNormals + 3 * k, smooth ? mesh.normals[vertex] : glm::vec3(0.0f));
+    }
+    put(kOrigin, ray.origin);
+    put(kDirection, ray.direction);
+    in_[kT][count_] = hit.t;
+    in_[kU][count_] = hit.uv.x;
+    in_[kV][count_] = hit.uv.y;
+    wanted_[count_++] = {&at.object, &at.object_from_world, at.material, &ray, &hit, &result};
+}
+
+void TriangleSurfaces::find(const Scene& scene) {
+    Arrays arrays;
+    for (std::size_t k = 0; k < kInputs; ++k)
+        arrays.in[k] = in_[k].data();
+    for (std::size_t k = 0; k < kOutputs; ++k)
+        arrays.out[k] = out_[k].data();
+    arrays.room = room_.data();
+    arrays.count = count_;
+    HWY_DYNAMIC_DISPATCH(find_triangles)(arrays);
+    for (std::size_t i = 0; i < count_; ++i) {
+        const Wanted& wanted = wanted_[i];
+        if (!(room_[i] > 0.0)) {
+            *wanted.result = surface_point(
+                scene, {*wanted.object, *wanted.object_from_world, wanted.material, false},
+                *wanted.ray, *wanted.hit);
+            continue;
+        }
+        SurfacePoint surface;
+        surface.position = got(kPosition, i);
+        surface.position_error = got(kError, i);
+        surface.geometric_normal = got(kGeometric, i);
+        surface.shading_normal = got(kShading, i);
+        surface.uv = wanted.hit->uv;
+        surface.front_face = wanted.hit->front_face;
+        surface.material = wanted.material;
+        *wanted.result = surface;
+    }
+}
+
+}  // namespace raypick
+
+#endif  // HWY_ONCE

@@ -1,0 +1,75 @@
+// Surface points on triangles, many at once.
+#pragma once
+
+#include "tracer/accel/surface.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace raypick {
+
+// Collects hits of meshes and works their surface points out together, as vectors of whatever width
+// the processor has. What surface_point says, to the bit.
+class TriangleSurfaces {
+public:
+    // Whether add() takes such hits: triangles of a mesh that nothing moves and no texture needs.
+    [[nodiscard]] static bool takes(const HitObject& at);
+
+    void clear() { count_ = 0; }
+    // All references must be alive when the surface is worked out, into `result`.
+    void add(const Scene& scene, const HitObject& at, const Ray& ray, const Hit& hit,
+             SurfacePoint& result);
+    // Sets the result of each hit added since clear().
+    void find(const Scene& scene);
+
+    // One float of each hit: corners, their normals (0 where there are none), the ray, t and uv.
+    enum Input : std::size_t {
+        kCorners = 0,
+        kNormals = kCorners + 9,
+        kOrigin = kNormals + 9,
+        kDirection = kOrigin + 3,
+        kT = kDirection + 3,
+        kU,
+        kV,
+        kInputs
+    };
+    enum Output : std::size_t {
+        kPosition = 0,
+        kError = 3,
+        kGeometric = 6,
+        kShading = 9,
+        kOutputs = 12
+    };
+    // Arrays of `count` floats, rounded up to whole vectors.
+    struct Arrays {
+        std::array<const float*, kInputs> in{};
+        std::array<float*, kOutputs> out{};
+        double* room = nullptr;  // > 0: far from the edges; others want a closer look
+        std::size_t count = 0;
+    };
+
+private:
+    struct Wanted {
+        const Object* object = nullptr;
+        const Transform* object_from_world = nullptr;
+        MaterialId material = kNoMaterial;
+        const Ray* ray = nullptr;
+        const Hit* hit = nullptr;
+        SurfacePoint* result = nullptr;
+    };
+
+    void grow();
+    void put(std::size_t first, const glm::vec3& v);
+    [[nodiscard]] glm::vec3 got(std::size_t first, std::size_t i) const;
+
+    std::size_t count_ = 0;
+    std::vector<Wanted> wanted_;
+    std::array<std::vector<float>, kInputs> in_;
+    std::array<std::vector<float>, kOutputs> out_;
+    std::vector<double> room_;
+};
+
+}  // namespace raypick
