@@ -113,12 +113,14 @@ private:
 SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
     const Object& object = scene.objects[object_index(scene, hit.object)];
     const Transform object_from_world = inverse(object.world_from_object).value_or(Transform{});
-    return surface_point(
-        scene, {object, object_from_world, material_id(scene, object, hit.primitive)}, ray, hit);
+    SurfacePoint surface;
+    set_surface_point(scene, {object, object_from_world, material_id(scene, object, hit.primitive)},
+                      ray, hit, surface);
+    return surface;
 }
 
-SurfacePoint surface_point(const Scene& scene, const HitObject& at, const Ray& ray,
-                           const Hit& hit) {
+void set_surface_point(const Scene& scene, const HitObject& at, const Ray& ray, const Hit& hit,
+                       SurfacePoint& surface) {
     const Placement place(at.object.world_from_object, at.object_from_world);
     const glm::dvec3 met =
         glm::dvec3(ray.origin) + static_cast<double>(hit.t) * glm::dvec3(ray.direction);
@@ -127,7 +129,6 @@ SurfacePoint surface_point(const Scene& scene, const HitObject& at, const Ray& r
                                          {place.linear(), rim, at.textured});
     const glm::dvec3 position = place.world_point(local.position);
 
-    SurfacePoint surface;
     surface.position = glm::vec3(position);
     surface.position_error = glm::vec3(place.rounding_bound(local.magnitude, position)) +
                              std::numeric_limits<float>::min();
@@ -135,6 +136,8 @@ SurfacePoint surface_point(const Scene& scene, const HitObject& at, const Ray& r
     surface.shading_normal = local.smooth ? glm::vec3(place.world_normal(local.shading_normal))
                                           : surface.geometric_normal;
     surface.uv = hit.uv;
+    surface.texture_uv = glm::vec2(0.0f);
+    surface.dpdu = surface.dpdv = glm::vec3(0.0f);
     if (at.textured) {
         surface.texture_uv = texture_uv(scene, at.object, hit);
         surface.dpdu = glm::vec3(place.world_vector(local.dpdu));
@@ -142,7 +145,6 @@ SurfacePoint surface_point(const Scene& scene, const HitObject& at, const Ray& r
     }
     surface.front_face = hit.front_face;
     surface.material = at.material;
-    return surface;
 }
 
 glm::vec2 texture_uv(const Scene& scene, const Object& object, const Hit& hit) {

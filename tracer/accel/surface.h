@@ -38,8 +38,10 @@ struct HitObject {
     MaterialId material = kNoMaterial;   // of the hit's primitive
     bool textured = true;                // false: texture_uv, dpdu and dpdv may be left 0
 };
-// The same without looking it up again.
-SurfacePoint surface_point(const Scene& scene, const HitObject& at, const Ray& ray, const Hit& hit);
+// The same without looking it up again, written where it is wanted: a copy of what was just put
+// together field by field makes processors wait.
+void set_surface_point(const Scene& scene, const HitObject& at, const Ray& ray, const Hit& hit,
+                       SurfacePoint& surface);
 
 // The next float on the side that `way` points to; x itself if that is 0. What std::nextafter gives
 // by a call.

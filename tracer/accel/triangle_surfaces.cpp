@@ -217,7 +217,13 @@ void TriangleSurfaces::add(const Scene& scene, const HitObject& at, const Ray& r
     in_[kT][count_] = hit.t;
     in_[kU][count_] = hit.uv.x;
     in_[kV][count_] = hit.uv.y;
-    wanted_[count_++] = {&at.object, &at.object_from_world, at.material, &ray, &hit, &result};
+    Wanted& wanted = wanted_[count_++];
+    wanted.object = &at.object;
+    wanted.object_from_world = &at.object_from_world;
+    wanted.material = at.material;
+    wanted.ray = &ray;
+    wanted.hit = &hit;
+    wanted.result = &result;
 }
 
 void TriangleSurfaces::find(const Scene& scene) {
@@ -231,21 +237,22 @@ void TriangleSurfaces::find(const Scene& scene) {
     HWY_DYNAMIC_DISPATCH(find_triangles)(arrays);
     for (std::size_t i = 0; i < count_; ++i) {
         const Wanted& wanted = wanted_[i];
+        SurfacePoint& surface = *wanted.result;
         if (!(room_[i] > 0.0)) {
-            *wanted.result = surface_point(
-                scene, {*wanted.object, *wanted.object_from_world, wanted.material, false},
-                *wanted.ray, *wanted.hit);
+            set_surface_point(scene,
+                              {*wanted.object, *wanted.object_from_world, wanted.material, false},
+                              *wanted.ray, *wanted.hit, surface);
             continue;
         }
-        SurfacePoint surface;
         surface.position = got(kPosition, i);
         surface.position_error = got(kError, i);
         surface.geometric_normal = got(kGeometric, i);
         surface.shading_normal = got(kShading, i);
         surface.uv = wanted.hit->uv;
+        surface.texture_uv = glm::vec2(0.0f);
+        surface.dpdu = surface.dpdv = glm::vec3(0.0f);
         surface.front_face = wanted.hit->front_face;
         surface.material = wanted.material;
-        *wanted.result = surface;
     }
 }
 

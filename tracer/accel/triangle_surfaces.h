@@ -12,7 +12,7 @@
 namespace raypick {
 
 // Collects hits of meshes and works their surface points out together, as vectors of whatever width
-// the processor has. What surface_point says, to the bit.
+// the processor has. What set_surface_point says, to the bit.
 class TriangleSurfaces {
 public:
     // Whether add() takes such hits: triangles of a mesh that nothing moves and no texture needs.

@@ -180,7 +180,9 @@ bool BatchTracer::arrive(const Step& step, int hidden, std::size_t i) {
     SurfaceMaterial* with_maps = found.material->has_maps ? &materials_.emplace_back() : nullptr;
     const ShadingPoint point =
         shading_point(scene, found, ray.direction, path.cone.width, with_maps);
-    points_.push_back({at_work_[i], lit_point(point)});
+    RayEnd& end = points_.emplace_back();
+    end.ray = at_work_[i];
+    end.point = lit_point(point);
     if (step.depth == 1) step.job.results[path.parent].normal = point.normal;
     path.colour = own_light(scene, point);
     if (found.material->branches && step.depth < scene.settings.depth) {
@@ -238,15 +240,15 @@ void BatchTracer::light_points(const Step& step) {
 void BatchTracer::light_points_by(const Step& step, std::size_t light, int sample) {
     gather_light(step, light, sample);
     if (!step.job.scene.settings.shadows) {
-        for (const Arriving& arriving : arriving_) {
-            const RayEnd& end = points_[arriving.point];
-            step.at.rays[end.ray].colour += lit_by(end.point, arriving.light, glm::vec3(1.0f));
+        for (std::size_t i = 0; i < arriving_count_; ++i) {
+            const RayEnd& end = points_[arriving_[i].point];
+            step.at.rays[end.ray].colour += lit_by(end.point, arriving_[i].light, glm::vec3(1.0f));
         }
         return;
     }
     find_shares(step, step.job.scene.lights[light]);
     std::size_t blocked = 0;
-    for (std::size_t i = 0; i < arriving_.size(); ++i) {
+    for (std::size_t i = 0; i < arriving_count_; ++i) {
         if (shares_[i] == glm::vec3(0.0f)) {
             ++blocked;
             continue;
@@ -261,38 +263,45 @@ void BatchTracer::light_points_by(const Step& step, std::size_t light, int sampl
 void BatchTracer::gather_light(const Step& step, std::size_t light, int sample) {
     const ShadeScene& scene = step.job.scene;
     const PreparedLight& source = scene.lights[light];
-    arriving_.clear();
-    shadow_rays_.clear();
+    const bool shadows = scene.settings.shadows;
+    if (arriving_.size() < points_.size()) {
+        arriving_.resize(points_.size());
+        shadow_rays_.resize(points_.size());
+    }
+    arriving_count_ = 0;
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
         const LitPoint& point = points_[i].point;
         const std::uint64_t seed =
             source.side > 1 ? light_seed(scene, step.at.rays[points_[i].ray].seed, light) : 0;
-        const LightSample arriving = light_sample(source, point.position, sample, seed);
-        if (!faces(point, arriving)) continue;
-        if (scene.settings.shadows) {
-            if (shades_itself(point, arriving)) continue;
-            shadow_rays_.push_back(shadow_ray(point, arriving));
-        }
-        arriving_.push_back({i, arriving});
+        const LightSample light_there = light_sample(source, point.position, sample, seed);
+        if (!faces(point, light_there)) continue;
+        if (shadows && shades_itself(point, light_there)) continue;
+        Arriving& arriving = arriving_[arriving_count_];
+        arriving.point = i;
+        arriving.light.direction = light_there.direction;
+        arriving.light.distance = light_there.distance;
+        arriving.light.colour = light_there.colour;
+        if (shadows) set_shadow_ray(point, light_there, shadow_rays_[arriving_count_]);
+        ++arriving_count_;
     }
 }
 
 // What arrives of the light along the shadow rays.
 void BatchTracer::find_shares(const Step& step, const PreparedLight& /*light*/) {
     const ShadeScene& scene = step.job.scene;
-    count_shadows(step.job.counts, shadow_rays_.size(), step.depth);
-    shares_.assign(shadow_rays_.size(), glm::vec3(1.0f));
+    const std::span<const Ray> rays = std::span(shadow_rays_).first(arriving_count_);
+    count_shadows(step.job.counts, rays.size(), step.depth);
+    shares_.assign(rays.size(), glm::vec3(1.0f));
     if (scene.settings.glass_shadows == GlassShadows::tinted) {
-        for (std::size_t i = 0; i < shadow_rays_.size(); ++i) {
+        for (std::size_t i = 0; i < rays.size(); ++i) {
             if (step.job.stop.stop_requested()) return;
             const PathRay& path = step.at.rays[points_[arriving_[i].point].ray];
-            shares_[i] =
-                transmittance(scene, shadow_rays_[i], step.at.interior_of(path), path.cone.width);
+            shares_[i] = transmittance(scene, rays[i], step.at.interior_of(path), path.cone.width);
         }
         return;
     }
-    blocked_.resize(shadow_rays_.size());
-    scene.accel->occluded(shadow_rays_, blocked_);
+    blocked_.resize(rays.size());
+    scene.accel->occluded(rays, blocked_);
     for (std::size_t i = 0; i < blocked_.size(); ++i)
         if (blocked_[i] != 0) shares_[i] = glm::vec3(0.0f);
 }

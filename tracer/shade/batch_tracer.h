@@ -12,6 +12,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <span>
@@ -67,6 +68,9 @@ private:
         std::uint32_t ray = 0;
         LitPoint point;
     };
+    // Arrays are filled field by field in place, and keep a length that is enough: copies of what
+    // was just put together make processors wait for the parts.
+
     // A light's sample on its way to one of points_.
     struct Arriving {
         std::uint32_t point = 0;
@@ -115,8 +119,9 @@ private:
     TriangleSurfaces triangles_;
     std::vector<RayEnd> points_;
     std::vector<SurfaceMaterial> materials_;  // with maps, of some of the points
-    std::vector<Arriving> arriving_;
+    std::vector<Arriving> arriving_;  // the first arriving_count_ are in use, as of shadow_rays_
     std::vector<Ray> shadow_rays_;
+    std::size_t arriving_count_ = 0;
     std::vector<std::uint8_t> blocked_;
     std::vector<glm::vec3> shares_;
 };

@@ -24,23 +24,4 @@ Boundary boundary_of_body(const ShadeScene& scene, const FoundHit& found, const 
     return boundary;
 }
 
-ShadingPoint shading_point(const ShadeScene& scene, const FoundHit& found,
-                           const glm::vec3& incoming, float width, SurfaceMaterial* with_maps) {
-    const SurfacePoint& surface = found.surface;
-    const Material& kind = *found.material->material;
-    const float side = surface.front_face ? 1.0f : -1.0f;
-    const glm::vec3 geometric = side * surface.geometric_normal;
-    const glm::vec3 outside = offset_origin(surface, geometric);
-    if (!found.material->has_maps) {
-        return {surface,  kind,   found.material->plain, side * surface.shading_normal, geometric,
-                incoming, outside};
-    }
-    const Scene& world = *scene.scene;
-    *with_maps = textured(world, kind, surface, incoming, width);
-    return {surface,    kind,
-            *with_maps, side * mapped_normal(world, kind, surface, incoming, width),
-            geometric,  incoming,
-            outside};
-}
-
 }  // namespace raypick

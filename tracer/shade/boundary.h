@@ -45,8 +45,23 @@ struct ShadingPoint {
 };
 // `width`: of the ray's cone there. `with_maps` is where a material with maps goes, for others it
 // may be null; it and `found` must outlive the result.
-ShadingPoint shading_point(const ShadeScene& scene, const FoundHit& found,
-                           const glm::vec3& incoming, float width, SurfaceMaterial* with_maps);
+inline ShadingPoint shading_point(const ShadeScene& scene, const FoundHit& found,
+                                  const glm::vec3& incoming, float width,
+                                  SurfaceMaterial* with_maps) {
+    const SurfacePoint& surface = found.surface;
+    const Material& kind = *found.material->material;
+    const float side = surface.front_face ? 1.0f : -1.0f;
+    const glm::vec3 geometric = side * surface.geometric_normal;
+    const glm::vec3 outside = offset_origin(surface, geometric);
+    glm::vec3 normal = surface.shading_normal;
+    if (found.material->has_maps) {
+        *with_maps = textured(*scene.scene, kind, surface, incoming, width);
+        normal = mapped_normal(*scene.scene, kind, surface, incoming, width);
+    }
+    return {surface,       kind,      found.material->has_maps ? *with_maps : found.material->plain,
+            side * normal, geometric, incoming,
+            outside};
+}
 
 // What the surface gives off by itself: its own glow, and the ambient light on it.
 inline glm::vec3 own_light(const ShadeScene& scene, const ShadingPoint& point) {

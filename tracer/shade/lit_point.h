@@ -36,9 +36,11 @@ inline bool shades_itself(const LitPoint& point, const LightSample& light) {
 
 // From the point to the light, but not to a surface that lies in the light itself. For light that
 // the surface does not keep off itself.
-inline Ray shadow_ray(const LitPoint& point, const LightSample& light) {
-    return Ray{point.outside, light.direction, 0.0f,
-               light.distance * static_cast<float>(1.0 - 2.0 * kTieGap)};
+inline void set_shadow_ray(const LitPoint& point, const LightSample& light, Ray& ray) {
+    ray.origin = point.outside;
+    ray.direction = light.direction;
+    ray.t_min = 0.0f;
+    ray.t_max = light.distance * static_cast<float>(1.0 - 2.0 * kTieGap);
 }
 
 // What this share of the light adds to the point's colour.

@@ -60,7 +60,7 @@ ShadeScene shade_scene(const Accel& accel, std::span<const Light> lights,
 
 FoundHit find_surface(const ShadeScene& scene, const Ray& ray, const Hit& hit) {
     FoundHit found;
-    found.surface = surface_point(*scene.scene, hit_object(scene, hit, found), ray, hit);
+    set_surface_point(*scene.scene, hit_object(scene, hit, found), ray, hit, found.surface);
     return found;
 }
 
@@ -73,7 +73,7 @@ void find_surfaces(const ShadeScene& scene, std::span<const Ray> rays, std::span
         if (TriangleSurfaces::takes(at)) {
             triangles.add(*scene.scene, at, rays[i], hits[i], found[i].surface);
         } else {
-            found[i].surface = surface_point(*scene.scene, at, rays[i], hits[i]);
+            set_surface_point(*scene.scene, at, rays[i], hits[i], found[i].surface);
         }
     }
     triangles.find(*scene.scene);

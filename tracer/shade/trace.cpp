@@ -126,7 +126,8 @@ private:
         if (!scene_.settings.shadows) return glm::vec3(1.0f);
         if (shades_itself(point, light)) return glm::vec3(0.0f);
         count_shadows(counts_, 1, path.depth);
-        const Ray ray = shadow_ray(point, light);
+        Ray ray;
+        set_shadow_ray(point, light, ray);
         glm::vec3 share(0.0f);
         if (scene_.settings.glass_shadows == GlassShadows::tinted) {
             share = transmittance(scene_, ray, &path.interior, path.cone.width);
