@@ -167,7 +167,7 @@ bool BatchTracer::arrive(const Step& step, int hidden, std::size_t i) {
         return false;
     }
     const FoundHit& found = found_[i];
-    const Boundary boundary = boundary_at(scene, found, hit, step.at.interior_of(path));
+    const Boundary boundary = boundary_at(scene, found, hit, step.at.interior_of(path), crossing_);
     if (boundary.medium != kNoMaterial) path.passed *= passed(scene, boundary.medium, hit.t);
     path.cone.width = path.cone.at(hit.t);
     if (!boundary.is_there && hidden < kMostHidden) {
@@ -182,11 +182,12 @@ bool BatchTracer::arrive(const Step& step, int hidden, std::size_t i) {
         shading_point(scene, found, ray.direction, path.cone.width, with_maps);
     RayEnd& end = points_.emplace_back();
     end.ray = at_work_[i];
-    end.point = lit_point(point);
+    set_lit_point(point, end.point);
     if (step.depth == 1) step.job.results[path.parent].normal = point.normal;
     path.colour = own_light(scene, point);
     if (found.material->branches && step.depth < scene.settings.depth) {
-        send_branches(step, at_work_[i], point, boundary);
+        const ShadingPoint in_memory(point);  // lets `point` stay in registers
+        send_branches(step, at_work_[i], in_memory, boundary);
     }
     return false;
 }

@@ -11,13 +11,14 @@ float index_of(const ShadeScene& scene, MaterialId medium) {
 }  // namespace
 
 Boundary boundary_of_body(const ShadeScene& scene, const FoundHit& found, const Hit& hit,
-                          const Interior* interior) {
-    Boundary boundary;
+                          const Interior* interior, Crossing& room) {
     const Scene& world = *scene.scene;
     const SurfacePoint& surface = found.surface;
-    const Crossing& crossing = boundary.crossing.emplace(
-        cross_surface(world, interior != nullptr ? *interior : Interior{},
-                      body_of(*found.object, hit), surface.material, surface.front_face));
+    room = cross_surface(world, interior != nullptr ? *interior : Interior{},
+                         body_of(*found.object, hit), surface.material, surface.front_face);
+    const Crossing& crossing = room;
+    Boundary boundary;
+    boundary.crossing = &room;
     boundary.medium = crossing.from;
     boundary.eta = index_of(scene, crossing.from) / index_of(scene, crossing.to);
     boundary.is_there = is_there(world, crossing, surface.material);

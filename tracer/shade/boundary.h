@@ -6,8 +6,6 @@
 
 #include <glm/vec3.hpp>
 
-#include <optional>
-
 namespace raypick {
 
 // Surfaces inside of glass of a higher priority that a ray goes through at most.
@@ -15,18 +13,19 @@ inline constexpr int kMostHidden = 64;
 
 // A surface as one ray meets it.
 struct Boundary {
-    std::optional<Crossing> crossing;  // only where it bounds a body
-    MaterialId medium = kNoMaterial;   // that the ray came through
-    float eta = 1.0f;                  // index before over index beyond
-    bool is_there = true;              // false: hidden inside of glass of a higher priority
+    const Crossing* crossing = nullptr;  // only where it bounds a body
+    MaterialId medium = kNoMaterial;     // that the ray came through
+    float eta = 1.0f;                    // index before over index beyond
+    bool is_there = true;                // false: hidden inside of glass of a higher priority
 };
-// `interior`: the bodies around the ray on its way there; nullptr: none.
+// `interior`: the bodies around the ray on its way there; nullptr: none. `room` is where a crossing
+// goes, which is large: it must outlive the result.
 Boundary boundary_of_body(const ShadeScene& scene, const FoundHit& found, const Hit& hit,
-                          const Interior* interior);
+                          const Interior* interior, Crossing& room);
 inline Boundary boundary_at(const ShadeScene& scene, const FoundHit& found, const Hit& hit,
-                            const Interior* interior) {
+                            const Interior* interior, Crossing& room) {
     if (scene.has_bodies && found.material->fills) {
-        return boundary_of_body(scene, found, hit, interior);
+        return boundary_of_body(scene, found, hit, interior, room);
     }
     Boundary boundary;
     if (interior != nullptr) boundary.medium = interior->medium(*scene.scene);

@@ -54,8 +54,12 @@ inline LightSample light_towards(const glm::dvec3& position, const glm::dvec3& f
     const glm::dvec3 offset = position - from;
     const double distance = glm::length(offset);
     if (!(distance > 0.0)) return {};
-    const double falloff = 1.0 / (a.constant + distance * (a.linear + distance * a.quadratic));
-    return {glm::vec3(offset / distance), static_cast<float>(distance),
+    // Divisions are what this takes time for.
+    const bool falls_off = a.linear != 0.0 || a.quadratic != 0.0;
+    const double weakening =
+        falls_off ? a.constant + distance * (a.linear + distance * a.quadratic) : a.constant;
+    const double falloff = weakening == 1.0 ? 1.0 : 1.0 / weakening;
+    return {glm::vec3(offset * (1.0 / distance)), static_cast<float>(distance),
             glm::vec3(glm::dvec3(colour) * (share * falloff))};
 }
 

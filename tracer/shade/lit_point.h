@@ -19,9 +19,13 @@ struct LitPoint {
     const SurfaceMaterial* material = nullptr;
 };
 
-inline LitPoint lit_point(const ShadingPoint& point) {
-    return {point.surface.position, point.outside,   point.normal,
-            point.geometric,        -point.incoming, &point.material};
+inline void set_lit_point(const ShadingPoint& point, LitPoint& lit) {
+    lit.position = point.surface.position;
+    lit.outside = point.outside;
+    lit.normal = point.normal;
+    lit.geometric = point.geometric;
+    lit.to_eye = -point.incoming;
+    lit.material = &point.material;
 }
 
 // Whether the light falls on the side that the ray sees, by the shading normal.

@@ -59,7 +59,8 @@ private:
         glm::vec3 share(1.0f);
         for (int hidden = 0;; ++hidden) {
             const FoundHit found = find_surface(scene_, ray, hit);
-            const Boundary boundary = boundary_at(scene_, found, hit, &path.interior);
+            Crossing room;
+            const Boundary boundary = boundary_at(scene_, found, hit, &path.interior, room);
             share *= passed(scene_, boundary.medium, hit.t);
             path.cone.width = path.cone.at(hit.t);
             if (boundary.is_there || hidden == kMostHidden) {
@@ -106,7 +107,8 @@ private:
     }
 
     glm::vec3 local(const ShadingPoint& point, const Path& path) {
-        const LitPoint lit = lit_point(point);
+        LitPoint lit;
+        set_lit_point(point, lit);
         glm::vec3 colour = own_light(scene_, point);
         for (std::size_t l = 0; l < scene_.lights.size(); ++l) {
             const PreparedLight& light = scene_.lights[l];
