@@ -47,7 +47,6 @@ void BatchTracer::trace(const ShadeScene& scene, std::span<const EyeRay> eyes,
                         const std::stop_token& stop) {
     const Job job{scene, results, counts, stop};
     begin(eyes);
-    std::fill(results.begin(), results.end(), TracedRay{});
     counts.eye += eyes.size();
     follow(job, 1);
     const std::vector<PathRay>& rays = generation(1).rays;
@@ -124,6 +123,10 @@ void BatchTracer::find_points(const Step& step) {
         find_surfaces(step.job.scene, rays_, hits_, found_, triangles_);
         std::size_t left = 0;
         for (std::size_t i = 0; i < at_work_.size(); ++i) {
+            if (!hits_[i].valid()) {
+                see_sky(step, step.at.rays[at_work_[i]], rays_[i]);
+                continue;
+            }
             if (!arrive(step, hidden, i)) continue;
             at_work_[left] = at_work_[i];
             directions_[left] = directions_[i];
@@ -150,22 +153,20 @@ void BatchTracer::intersect_groups(const Job& job) {
 
 void BatchTracer::note_first_hits(const Job& job) {
     for (std::size_t i = 0; i < hits_.size(); ++i) {
-        if (!hits_[i].valid()) continue;
-        ++job.counts.eye_hits;
-        job.results[at_work_[i]].hit = hits_[i];
+        TracedRay& result = job.results[at_work_[i]];
+        result.hit = hits_[i];
+        result.normal = glm::vec3(0.0f);
+        job.counts.eye_hits += hits_[i].valid() ? 1 : 0;
     }
 }
 
-// What ray i of those at work brings back by itself. True: it goes on, since the surface is hidden.
+// What ray i of those at work, which hits something, brings back by itself. True: it goes on, since
+// the surface is hidden.
 bool BatchTracer::arrive(const Step& step, int hidden, std::size_t i) {
     PathRay& path = step.at.rays[at_work_[i]];
     const ShadeScene& scene = step.job.scene;
     const Hit& hit = hits_[i];
     const Ray& ray = rays_[i];
-    if (!hit.valid()) {
-        see_sky(step, path, ray);
-        return false;
-    }
     const FoundHit& found = found_[i];
     const Boundary boundary = boundary_at(scene, found, hit, step.at.interior_of(path), crossing_);
     if (boundary.medium != kNoMaterial) path.passed *= passed(scene, boundary.medium, hit.t);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <variant>
 
 namespace raypick {
@@ -25,14 +27,45 @@ PreparedMaterial prepared(const Material& material, const RenderSettings& settin
     return result;
 }
 
-// Notes what was hit, and says what is known of it.
-HitObject hit_object(const ShadeScene& scene, const Hit& hit, FoundHit& found) {
+// Some primitives of an object that have one material: rays side by side mostly hit the same.
+struct KnownPart {
+    const Object* object = nullptr;
+    const Transform* object_from_world = nullptr;
+    MaterialId material = kNoMaterial;
+    const PreparedMaterial* prepared = nullptr;
+    std::uint32_t first = 0;  // primitives
+    std::uint32_t last = 0;
+    bool in_batches = false;  // see TriangleSurfaces
+
+    [[nodiscard]] bool holds(const Hit& hit) const {
+        return object != nullptr && object->id == hit.object && hit.primitive >= first &&
+               hit.primitive <= last;
+    }
+    [[nodiscard]] HitObject at() const {
+        return {*object, *object_from_world, material, prepared->has_maps};
+    }
+};
+
+KnownPart part_at(const ShadeScene& scene, const Hit& hit) {
     const std::size_t index = object_index(*scene.scene, hit.object);
-    const Object& object = scene.scene->objects[index];
-    const MaterialId id = material_id(*scene.scene, object, hit.primitive);
-    found.object = &object;
-    found.material = &prepared_material(scene, id);
-    return {object, scene.accel->object_from_world(index), id, found.material->has_maps};
+    KnownPart known;
+    known.object = &scene.scene->objects[index];
+    known.object_from_world = &scene.accel->object_from_world(index);
+    known.last = std::numeric_limits<std::uint32_t>::max();
+    known.material = known.object->material;
+    if (known.material == kNoMaterial) {
+        const Part* part = part_of(parts_of(*scene.scene, known.object->shape), hit.primitive);
+        if (part != nullptr) {
+            known.material = part->material;
+            known.first = part->first;
+            known.last = part->first + (part->count - 1);
+        } else {
+            known.first = known.last = hit.primitive;
+        }
+    }
+    known.prepared = &prepared_material(scene, known.material);
+    known.in_batches = TriangleSurfaces::takes(known.at());
+    return known;
 }
 
 }  // namespace
@@ -59,21 +92,27 @@ ShadeScene shade_scene(const Accel& accel, std::span<const Light> lights,
 }
 
 FoundHit find_surface(const ShadeScene& scene, const Ray& ray, const Hit& hit) {
+    const KnownPart part = part_at(scene, hit);
     FoundHit found;
-    set_surface_point(*scene.scene, hit_object(scene, hit, found), ray, hit, found.surface);
+    found.object = part.object;
+    found.material = part.prepared;
+    set_surface_point(*scene.scene, part.at(), ray, hit, found.surface);
     return found;
 }
 
 void find_surfaces(const ShadeScene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
                    std::span<FoundHit> found, TriangleSurfaces& triangles) {
     triangles.clear();
+    KnownPart part;
     for (std::size_t i = 0; i < hits.size(); ++i) {
         if (!hits[i].valid()) continue;
-        const HitObject at = hit_object(scene, hits[i], found[i]);
-        if (TriangleSurfaces::takes(at)) {
-            triangles.add(*scene.scene, at, rays[i], hits[i], found[i].surface);
+        if (!part.holds(hits[i])) part = part_at(scene, hits[i]);
+        found[i].object = part.object;
+        found[i].material = part.prepared;
+        if (part.in_batches) {
+            triangles.add(*scene.scene, part.at(), rays[i], hits[i], found[i].surface);
         } else {
-            set_surface_point(*scene.scene, at, rays[i], hits[i], found[i].surface);
+            set_surface_point(*scene.scene, part.at(), rays[i], hits[i], found[i].surface);
         }
     }
     triangles.find(*scene.scene);
