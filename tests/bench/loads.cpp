@@ -1,0 +1,142 @@
+#include "tests/bench/command.h"
+#include "tests/bench/groups.h"
+#include "tests/bench/scenes.h"
+#include "tests/bench/screen.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+
+namespace raypick::bench {
+
+namespace {
+
+struct Model {
+    const char* name;
+    const char* path;
+};
+
+constexpr std::array<Model, 5> kModels{{
+    {"bunny.ply", "stanford/bunny_binary.ply"},
+    {"sponza.obj", "sponza/sponza.obj"},
+    {"motorBike.obj", "openfoam/motorBike.obj"},
+    {"kitchen.glb", "bitterli/kitchen.glb"},
+    {"UltimakerRobot_support.stl", "cura/UltimakerRobot_support.stl"},
+}};
+
+constexpr Target kTarget{1.2, 3.0};
+
+std::string resolution() {
+    return fmt::format("{},{}", Screen::kCols, Screen::kRows);
+}
+
+// From start to end of a program that leaves a PNG.
+double until_png(const std::string& command, const std::filesystem::path& png) {
+    std::filesystem::remove(png);
+    const CommandResult result = run_shell(command);
+    if (result.exit_code != 0 || !std::filesystem::exists(png)) {
+        throw std::runtime_error(command + ": " + result.out);
+    }
+    return result.seconds;
+}
+
+// From start to the first frame of the window that shows the model.
+double until_window(const std::vector<std::string>& words, const Screen& screen) {
+    screen.wait_for_picture(false);
+    std::optional<Child> child;  // its end is not timed
+    return seconds_of([&] {
+        child.emplace(words, screen.display());
+        screen.wait_for_picture(true);
+    });
+}
+
+std::vector<Contender> png_contenders(const std::filesystem::path& model, const Options& options,
+                                      const Screen& screen) {
+    const std::filesystem::path png = std::filesystem::absolute("load.png");
+    const std::string environment = "DISPLAY=" + screen.display();
+    const std::string ours =
+        fmt::format("{} '{}' render '{}' --raster --output='{}' --resolution={}", environment,
+                    options.program.string(), model.string(), png.string(), resolution());
+    const std::string theirs = fmt::format("{} f3d --dry-run '{}' --output='{}' --resolution={}",
+                                           environment, model.string(), png.string(), resolution());
+    return {{"ours", [ours, png] { return until_png(ours, png); }},
+            {"f3d", [theirs, png] { return until_png(theirs, png); }}};
+}
+
+std::vector<Contender> window_contenders(const std::filesystem::path& model, const Options& options,
+                                         const Screen& screen) {
+    const std::vector<std::string> ours{options.program.string(), "view", model.string(),
+                                        "--resolution=" + resolution()};
+    const std::vector<std::string> theirs{"f3d", "--dry-run", model.string(),
+                                          "--resolution=" + resolution()};
+    return {{"ours", [ours, &screen] { return until_window(ours, screen); }},
+            {"f3d", [theirs, &screen] { return until_window(theirs, screen); }}};
+}
+
+// Reading the file into the cache is nobody's work.
+void warm_up(const std::vector<Contender>& contenders) {
+    for (const Contender& contender : contenders)
+        contender.run();
+}
+
+void measure(const std::string& name, const std::vector<Contender>& contenders, Report& report) {
+    if (!report.wants(name)) return;
+    try {
+        warm_up(contenders);
+    } catch (const std::exception& error) {
+        report.wrong(fmt::format("{}: {}", name, error.what()));
+        return;
+    }
+    const std::vector<Timing> timings = alternate(contenders, report.options().rounds);
+    Row row;
+    row.name = name;
+    for (const Timing& timing : timings) {
+        std::vector<double> times;
+        for (const double seconds : timing.seconds)
+            times.push_back(1000.0 * seconds);
+        row.figures.push_back({timing.name, summary(std::move(times)), "ms"});
+    }
+    if (timings.size() == 2) {
+        row.result_name = "f3d / ours";
+        row.result = ratio(timings[1], timings[0]);
+        row.target = kTarget;
+    }
+    report.add(row);
+}
+
+bool all_there(Report& report) {
+    if (report.options().program.empty()) {
+        report.missing("raypick, the program (RAYPICK_BUILD_VIEWER)");
+        return false;
+    }
+    for (const char* program : {"f3d", "Xvfb"}) {
+        if (has_program(program)) continue;
+        report.missing(program);
+        return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+void run_loads(Report& report) {
+    std::vector<std::string> names;
+    for (const Model& model : kModels) {
+        names.push_back(fmt::format("loads/{}/png", model.name));
+        names.push_back(fmt::format("loads/{}/window", model.name));
+    }
+    if (!report.wants_any(names) || !all_there(report)) return;
+    const Screen screen;
+    const std::size_t count = report.options().smoke ? 1 : kModels.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto file = model_file(kModels[i].path, report);
+        if (!file) continue;
+        measure(names[2 * i], png_contenders(*file, report.options(), screen), report);
+        measure(names[2 * i + 1], window_contenders(*file, report.options(), screen), report);
+    }
+}
+
+}  // namespace raypick::bench
