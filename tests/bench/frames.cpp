@@ -2,8 +2,8 @@
 #include "tests/bench/frame_peers.h"
 #include "tests/bench/groups.h"
 #include "tests/bench/scenes.h"
-
 #include "tracer/accel/accel.h"
+#include "tracer/render/image.h"
 #include "tracer/render/render_job.h"
 
 #include <fmt/format.h>
@@ -80,7 +80,7 @@ std::unique_ptr<EmbreeRenderer> embree_renderer(const View& view, const Options&
     return std::make_unique<EmbreeRenderer>(scene, view.camera);
 }
 
-// The two must show the same.
+// The two must show the same. Ours is kept in the current folder.
 void compare(const FrameDuel& duel, const EmbreeRenderer& theirs, ImageSize size,
              const std::string& name, Report& report) {
     const RenderedFrame frame = render(duel.accel, duel.view.camera, size, duel.settings);
@@ -88,6 +88,7 @@ void compare(const FrameDuel& duel, const EmbreeRenderer& theirs, ImageSize size
     const std::string text = fmt::format(
         "{}: {} x {}, {:.2f} M rays; mean difference to the picture by Embree {:.2f} %", name,
         size.cols, size.rows, static_cast<double>(frame.rays.total()) * 1e-6, 100.0 * apart);
+    write_image(frame.image, duel.view.name + ".png");
     report.note(text);
     if (!(apart < 0.02)) report.wrong(text);
 }

@@ -108,7 +108,7 @@ void measure(const std::string& name, const std::vector<Contender>& contenders, 
 }
 
 bool all_there(Report& report) {
-    if (report.options().program.empty()) {
+    if (!std::filesystem::exists(report.options().program)) {
         report.missing("raypick, the program (RAYPICK_BUILD_VIEWER)");
         return false;
     }

@@ -2,7 +2,6 @@
 #include "tests/bench/embree_scene.h"
 #include "tests/bench/groups.h"
 #include "tests/bench/scenes.h"
-
 #include "tracer/accel/accel.h"
 
 #include <fmt/format.h>

@@ -48,7 +48,7 @@ public:
     // True if it names a row of this group (a name's first parts) or could.
     [[nodiscard]] bool wants_any(const std::vector<std::string>& names) const;
 
-    void add(const Row& row);
+    void add(Row row);
     // A line for people, not a number: a peer's setting, a check that held.
     void note(const std::string& text);
     // Something without which rows are left out. In CI (CI=true) nothing may be missing.

@@ -76,11 +76,11 @@ View finish(const std::string& name, Scene scene, const Camera& camera, const gl
 
 constexpr ImageSize kShape{1080, 1920};
 
-// Close up: the model fills the view.
+// Close up: the model fills half of the view.
 View object_view(const std::string& name, Scene scene) {
     const Bounds bounds = scene_bounds(scene);
-    const Camera camera =
-        frame_bounds(bounds, {-0.25, -0.3, -1.0}, {0, 1, 0}, 40.0, kShape.aspect());
+    Camera camera = frame_bounds(bounds, {-0.25, -0.3, -1.0}, {0, 1, 0}, 40.0, kShape.aspect());
+    camera.fovy = 23.0;
     const glm::dvec3 light =
         glm::dvec3(bounds.centre()) + glm::dvec3(bounds.extent()) * glm::dvec3(-0.8, 1.5, 1.2);
     return finish(name, std::move(scene), camera, light);
