@@ -70,7 +70,7 @@ Row measure(const View& view, const std::vector<Contender>& contenders, int thre
         std::vector<double> rates;
         for (const double seconds : timing.seconds)
             rates.push_back(million_primitives(*view.scene) / seconds);
-        row.figures.push_back({timing.name, summary(std::move(rates)), "M/s"});
+        row.figures.push_back({timing.name, summary(rates), "M/s"});
     }
     if (timings.size() == 2) {
         row.result_name = fmt::format("{} / ours", timings[1].name);

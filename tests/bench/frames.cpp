@@ -27,7 +27,7 @@ Figure figure(const Timing& timing) {
     std::vector<double> times;
     for (const double seconds : timing.seconds)
         times.push_back(1000.0 * seconds);
-    return {timing.name, summary(std::move(times)), "ms"};
+    return {timing.name, summary(times), "ms"};
 }
 
 // Against the renderer on Embree, in the same rounds by each number of threads.

@@ -69,7 +69,7 @@ Figure rate_figure(const Mode& mode, const Timing& timing, std::size_t count) {
     std::vector<double> rates;
     for (const double seconds : timing.seconds)
         rates.push_back(static_cast<double>(count) / seconds * 1e-6);
-    return {(mode.ours ? "our " : "") + mode.name, summary(std::move(rates)), "Mrays/s"};
+    return {(mode.ours ? "our " : "") + mode.name, summary(rates), "Mrays/s"};
 }
 
 std::vector<Timing> time(const std::vector<Mode>& modes, std::size_t count, int threads,

@@ -97,7 +97,7 @@ void measure(const std::string& name, const std::vector<Contender>& contenders, 
         std::vector<double> times;
         for (const double seconds : timing.seconds)
             times.push_back(1000.0 * seconds);
-        row.figures.push_back({timing.name, summary(std::move(times)), "ms"});
+        row.figures.push_back({timing.name, summary(times), "ms"});
     }
     if (timings.size() == 2) {
         row.result_name = "f3d / ours";

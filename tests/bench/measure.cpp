@@ -47,11 +47,11 @@ std::vector<Timing> alternate(const std::vector<Contender>& contenders, int roun
 double quantile(std::vector<double> values, double share) {
     if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
     std::sort(values.begin(), values.end());
-    const double last = static_cast<double>(values.size() - 1);
+    const auto last = static_cast<double>(values.size() - 1);
     return values[static_cast<std::size_t>(std::lround(share * last))];
 }
 
-Summary summary(std::vector<double> values) {
+Summary summary(const std::vector<double>& values) {
     return {quantile(values, 0.5), quantile(values, 0.0), quantile(values, 1.0)};
 }
 
@@ -60,7 +60,7 @@ Summary ratio(const Timing& theirs, const Timing& ours) {
     const std::size_t rounds = std::min(theirs.seconds.size(), ours.seconds.size());
     for (std::size_t i = 0; i < rounds; ++i)
         ratios.push_back(theirs.seconds[i] / ours.seconds[i]);
-    return summary(std::move(ratios));
+    return summary(ratios);
 }
 
 std::optional<Timing> fastest(const std::vector<Timing>& timings) {

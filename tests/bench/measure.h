@@ -30,7 +30,7 @@ struct Summary {
     double most = 0.0;
 };
 
-Summary summary(std::vector<double> values);
+Summary summary(const std::vector<double>& values);
 // The value that a share of 0..1 of the values doesn't exceed.
 double quantile(std::vector<double> values, double share);
 

@@ -77,7 +77,7 @@ Row row_of(const std::string& name, const std::vector<std::vector<double>>& roun
     row.name = name;
     row.threads = 1;
     row.result_name = "one pick";
-    row.result = summary(std::move(values));
+    row.result = summary(values);
     row.result_unit = "us";
     if (target != nullptr) row.target = *target;
     return row;

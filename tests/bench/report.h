@@ -59,7 +59,7 @@ public:
     [[nodiscard]] const Options& options() const { return options_; }
 
     // Prints how many rows are where, writes the JSON; the program's exit code.
-    int finish() const;
+    [[nodiscard]] int finish() const;
 
 private:
     void write_json() const;

@@ -134,6 +134,7 @@ View bunny_on_mirror(Scene scene) {
     below.y = static_cast<double>(bounds.min.y);
     View view = object_view("bunny_mirror", scene);
     add_floor(scene, below, 3.0 * static_cast<double>(glm::length(bounds.extent())));
+    view.camera.fovy = 38.0;  // so that the mirror is seen
     return finish("bunny_mirror", std::move(scene), view.camera, view.light);
 }
 
