@@ -7,6 +7,7 @@
 
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 
@@ -43,14 +44,32 @@ double until_png(const std::string& command, const std::filesystem::path& png) {
     return result.seconds;
 }
 
-// From start to the first frame of the window that shows the model.
-double until_window(const std::vector<std::string>& words, const Screen& screen) {
-    screen.wait_for_picture(false);
+// What the window shows when all is loaded.
+Screen::Picture final_picture(const std::vector<std::string>& words, const Screen& screen,
+                              bool smoke) {
+    screen.wait_until_empty();
+    const Child child(words, screen.display());
+    return screen.wait_until_still(smoke ? 1.5 : 5.0);
+}
+
+// From start to the first frame of the window that shows this.
+double until_window(const std::vector<std::string>& words, const Screen& screen,
+                    const Screen::Picture& wanted) {
+    screen.wait_until_empty();
     std::optional<Child> child;  // its end is not timed
     return seconds_of([&] {
         child.emplace(words, screen.display());
-        screen.wait_for_picture(true);
+        screen.wait_for(wanted);
     });
+}
+
+Contender window_contender(const std::string& name, const std::vector<std::string>& words,
+                           const Screen& screen, bool smoke) {
+    const auto wanted = std::make_shared<Screen::Picture>();
+    return {name, [words, &screen, wanted, smoke] {
+                if (wanted->empty()) *wanted = final_picture(words, screen, smoke);
+                return until_window(words, screen, *wanted);
+            }};
 }
 
 std::vector<Contender> png_contenders(const std::filesystem::path& model, const Options& options,
@@ -72,8 +91,8 @@ std::vector<Contender> window_contenders(const std::filesystem::path& model, con
                                         "--resolution=" + resolution()};
     const std::vector<std::string> theirs{"f3d", "--dry-run", model.string(),
                                           "--resolution=" + resolution()};
-    return {{"ours", [ours, &screen] { return until_window(ours, screen); }},
-            {"f3d", [theirs, &screen] { return until_window(theirs, screen); }}};
+    return {window_contender("ours", ours, screen, options.smoke),
+            window_contender("f3d", theirs, screen, options.smoke)};
 }
 
 // Reading the file into the cache is nobody's work.

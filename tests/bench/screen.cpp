@@ -9,11 +9,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <cstring>
 #include <filesystem>
-#include <set>
 #include <stdexcept>
 #include <thread>
 
@@ -63,6 +64,12 @@ std::size_t xwd_field(std::span<const unsigned char> file, std::size_t index) {
     for (std::size_t i = 0; i < 4; ++i)
         value = value << 8u | file[4 * index + i];
     return value;
+}
+
+// One colour: no window, or nothing in it.
+bool is_empty(const Screen::Picture& picture) {
+    return std::count(picture.begin(), picture.end(), picture.front()) ==
+           static_cast<std::ptrdiff_t>(picture.size());
 }
 
 void end(pid_t process, int signal) {
@@ -119,34 +126,61 @@ void Screen::map_frame_buffer(const std::string& file) {
     frame_buffer_ = {static_cast<const unsigned char*>(memory), size};
 }
 
-bool Screen::shows_picture() const {
+Screen::Picture Screen::picture() const {
     constexpr std::size_t kHeaderSize = 0;
     constexpr std::size_t kBytesPerLine = 12;
     constexpr std::size_t kColours = 19;
     constexpr std::size_t kColourBytes = 12;
-    constexpr std::size_t kPoints = 16;
+    constexpr std::size_t kPoints = 24;
     const std::size_t begin =
         xwd_field(frame_buffer_, kHeaderSize) + kColourBytes * xwd_field(frame_buffer_, kColours);
     const std::size_t line = xwd_field(frame_buffer_, kBytesPerLine);
-    std::set<std::uint32_t> colours;
-    for (std::size_t i = 0; i < kPoints * kPoints; ++i) {
+    Picture points(kPoints * kPoints);
+    for (std::size_t i = 0; i < points.size(); ++i) {
         const std::size_t row = kRows / 4 + i / kPoints * (kRows / 2) / kPoints;
-        const std::size_t col = kCols * 3 / 8 + i % kPoints * (kCols / 4) / kPoints;
-        std::uint32_t pixel = 0;
-        std::memcpy(&pixel, &frame_buffer_[begin + row * line + 4 * col], sizeof(pixel));
-        colours.insert(pixel & 0xffffffu);
+        const std::size_t col = kCols / 5 + i % kPoints * (kCols * 2 / 5) / kPoints;
+        std::memcpy(&points[i], &frame_buffer_[begin + row * line + 4 * col], sizeof(points[i]));
     }
-    return colours.size() >= 12;
+    return points;
 }
 
-void Screen::wait_for_picture(bool shown) const {
+void Screen::wait_until(const std::function<bool()>& condition) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
-    while (shows_picture() != shown) {
+    while (!condition()) {
         if (std::chrono::steady_clock::now() > deadline) {
-            throw std::runtime_error("the window shows nothing");
+            throw std::runtime_error("the screen doesn't show what it should");
         }
         std::this_thread::sleep_for(std::chrono::microseconds(500));
     }
+}
+
+Screen::Picture Screen::wait_until_still(double seconds) const {
+    using Clock = std::chrono::steady_clock;
+    Picture last = picture();
+    Clock::time_point since = Clock::now();
+    wait_until([&] {
+        Picture now = picture();
+        if (now != last || is_empty(now)) {
+            last = std::move(now);
+            since = Clock::now();
+        }
+        return std::chrono::duration<double>(Clock::now() - since).count() > seconds;
+    });
+    return last;
+}
+
+void Screen::wait_for(const Picture& wanted) const {
+    wait_until([&] {
+        const Picture now = picture();
+        std::size_t same = 0;
+        for (std::size_t i = 0; i < now.size(); ++i)
+            same += now[i] == wanted[i] ? 1 : 0;
+        return 20 * same >= 19 * now.size();
+    });
+}
+
+void Screen::wait_until_empty() const {
+    wait_until([this] { return is_empty(picture()); });
 }
 
 }  // namespace raypick::bench

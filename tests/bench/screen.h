@@ -4,8 +4,8 @@
 
 #include <sys/types.h>
 
-#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,14 +37,21 @@ public:
 
     [[nodiscard]] const std::string& display() const { return display_; }
 
-    // True if its middle shows something shaded: a grid of 16 x 16 points there has a dozen
-    // colours or more. An empty window has one, one with a word in it a few.
-    [[nodiscard]] bool shows_picture() const;
-    // Returns once the screen is (not) showing a picture; throws std::runtime_error after a minute.
-    void wait_for_picture(bool shown) const;
+    // The colours of a grid of points in the middle, where both our window and F3D's have the
+    // model.
+    using Picture = std::vector<std::uint32_t>;
+    [[nodiscard]] Picture picture() const;
+
+    // What it shows in the end: once it is not empty and has been still for so long.
+    [[nodiscard]] Picture wait_until_still(double seconds) const;
+    // Returns once nearly all of the picture is this one.
+    void wait_for(const Picture& wanted) const;
+    // Returns once no window is left.
+    void wait_until_empty() const;
 
 private:
     void map_frame_buffer(const std::string& file);
+    static void wait_until(const std::function<bool()>& condition);
 
     pid_t server_ = -1;
     std::string display_;
