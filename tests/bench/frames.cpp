@@ -104,7 +104,7 @@ Contender embree_frame(const EmbreeRenderer& renderer, const FrameDuel& duel, Im
 #endif
 
 // Contenders come in pairs where there is Embree: ours, theirs, by number of threads.
-void fight(FrameDuel& duel, const std::string& name, Report& report) {
+void fight(FrameDuel& duel, [[maybe_unused]] const std::string& name, Report& report) {
     const Options& options = report.options();
     std::vector<Contender> contenders;
 #ifdef RAYPICK_HAS_EMBREE

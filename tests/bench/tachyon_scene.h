@@ -9,7 +9,8 @@
 namespace raypick::bench {
 
 // Spheres, triangles, point lights; diffuse and mirrored light, transparency (which Tachyon doesn't
-// bend). Throws std::invalid_argument that names what it has no equivalent for.
+// bend). Its pictures are mirrored, left for right. Throws std::invalid_argument that names what it
+// has no equivalent for.
 void write_tachyon_scene(const std::filesystem::path& file, const Scene& scene,
                          const Camera& camera, int depth);
 
