@@ -71,6 +71,7 @@ std::vector<double> time_picks(const Accel& accel, const View& view, ImageSize s
 Row row_of(const std::string& name, const std::vector<std::vector<double>>& rounds, double share,
            const Target* target) {
     std::vector<double> values;
+    values.reserve(rounds.size());
     for (const std::vector<double>& times : rounds)
         values.push_back(quantile(times, share));
     Row row;
