@@ -61,6 +61,7 @@ public:
     // Turns places into the indices of the boxes, while they are at hand.
     Forest build(std::span<const BoxRef> refs) {
         find_leaves(refs);
+        forest_.nodes.reserve(2 * leaves_.size());
         const auto step = [this](std::size_t i) {
             return step_before(keys_,
                                i < leaves_.size() ? leaves_[i].first - first_key_ : keys_.size());
