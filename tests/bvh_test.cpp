@@ -72,7 +72,9 @@ Boxes clustered(std::uint64_t seed, std::size_t count) {
 }
 
 Boxes same(std::size_t count, const Bounds& box) {
-    return Boxes(count, box);
+    Boxes boxes;
+    boxes.assign(count, box);
+    return boxes;
 }
 
 Bounds point_box(float x, float y, float z) {
@@ -257,7 +259,8 @@ TEST_P(BvhBuilder, TakesBoxesOnALineAndInAPlane) {
     Boxes plane;
     for (int i = 0; i < 30000; ++i) {
         line.push_back(point_box(0.0f, static_cast<float>(i * 7919 % 30000), 3.0f));
-        plane.push_back(point_box(static_cast<float>(i % 173), -1.0f, static_cast<float>(i / 173)));
+        const int row = i / 173;
+        plane.push_back(point_box(static_cast<float>(i % 173), -1.0f, static_cast<float>(row)));
     }
     for (const Boxes& boxes : {line, plane}) {
         TreeCheck check(GetParam()(boxes), boxes);
@@ -295,9 +298,10 @@ TEST_P(BvhBuilder, TakesHugeAndTinyBoxes) {
 TEST_P(BvhBuilder, NoTreeIsTooDeep) {
     Boxes boxes;
     for (int repeat = 0; repeat < 200; ++repeat) {
-        float x = 1e18f;
-        for (int i = 0; i < 180; ++i, x *= 0.5f)
+        for (int power = 60; power > -120; --power) {
+            const float x = std::ldexp(1.0f, power);
             boxes.push_back({glm::vec3(0.5f * x, 0.0f, 0.0f), glm::vec3(x)});
+        }
     }
     TreeCheck check(GetParam()(boxes), boxes);
     EXPECT_EQ(check.complaint(), "");
@@ -388,15 +392,17 @@ TEST(BvhRefit, FollowsATreeThatIsNothingButDeep) {
     Bvh chain;  // inner nodes at even places, each with a leaf and the next
     Boxes boxes;
     constexpr std::uint32_t kLeaves = 60;
+    constexpr std::size_t kNodes = 2 * std::size_t{kLeaves} - 1;
     for (std::uint32_t i = 0; i < kLeaves; ++i) {
         boxes.push_back(point_box(static_cast<float>(i), 0.0f, 0.0f));
         chain.indices.push_back(i);
     }
-    chain.nodes.resize(2 * kLeaves - 1);
+    chain.nodes.resize(kNodes);
     for (std::uint32_t i = 0; i + 1 < kLeaves; ++i) {
-        chain.nodes[2 * i].first = 2 * i + 1;
-        chain.nodes[2 * i + 1].first = i;
-        chain.nodes[2 * i + 1].count = 1;
+        const std::uint32_t child = 2 * i + 1;
+        chain.nodes[child - 1].first = child;
+        chain.nodes[child].first = i;
+        chain.nodes[child].count = 1;
     }
     chain.nodes.back().first = kLeaves - 1;
     chain.nodes.back().count = 1;

@@ -45,12 +45,12 @@ struct LeafCosts {
 // For a tree that is made 8 wide and whose leaves are tested four or eight boxes at once. A wide
 // node stands for about three levels of binary ones.
 inline constexpr LeafCosts kWideLeaves{
-    .node = 0.4f, .block = 1.0f, .block_size = 4, .min_leaf = 1, .max_leaf = 8};
+    .node = 0.3f, .block = 1.0f, .block_size = 4, .min_leaf = 1, .max_leaf = 8};
 
 // The same for surfaces: what lies near each other there is near enough for one leaf, and not to
 // look whether it is saves an eighth of the time.
 inline constexpr LeafCosts kWideSurfaceLeaves{
-    .node = 0.4f, .block = 1.0f, .block_size = 4, .min_leaf = 4, .max_leaf = 8};
+    .node = 0.3f, .block = 1.0f, .block_size = 4, .min_leaf = 4, .max_leaf = 8};
 
 struct BvhOptions {
     LeafCosts costs;
