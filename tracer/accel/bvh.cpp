@@ -19,8 +19,12 @@ namespace raypick {
 namespace {
 
 // Ranges above this are split one after the other, each on all threads; those below are built each
-// by one thread. A constant, so that the tree does not depend on the number of threads.
-constexpr std::size_t kSubtreeSize = 1u << 13;
+// by one thread. By the number of boxes, so that the tree does not depend on that of the threads:
+// enough subtrees for many threads, and no more ranges than need be that all wait for.
+std::size_t subtree_size(std::size_t boxes) {
+    constexpr std::size_t kLeast = 1u << 13;
+    return std::clamp(boxes / 64, kLeast, kLeast * 8);
+}
 
 struct Range {
     std::size_t begin = 0;
@@ -40,7 +44,7 @@ public:
           options_(options),
           max_split_depth_(max_split_depth) {
         assert(std::has_single_bit(options.costs.block_size));
-        assert(options.costs.max_leaf >= 1 && options.costs.max_leaf <= kSubtreeSize);
+        assert(options.costs.max_leaf >= 1 && options.costs.max_leaf <= subtree_size(0));
     }
 
     Bvh build() {
@@ -62,7 +66,7 @@ private:
         while (!todo.empty()) {
             const Range range = todo.back();
             todo.pop_back();
-            if (range.size() <= kSubtreeSize) {
+            if (range.size() <= subtree_size(refs_.size())) {
                 roots.push_back(range);
                 continue;
             }
