@@ -25,24 +25,22 @@ public:
     // Sets the result of each hit added since clear().
     void find(const Scene& scene);
 
-    // One float of each hit: corners, their normals (0 where there are none), the ray, t and uv.
-    enum Input : std::size_t {
-        kCorners = 0,
-        kNormals = kCorners + 9,
-        kOrigin = kNormals + 9,
-        kDirection = kOrigin + 3,
-        kT = kDirection + 3,
-        kU,
-        kV,
-        kInputs
-    };
-    enum Output : std::size_t {
-        kPosition = 0,
-        kError = 3,
-        kGeometric = 6,
-        kShading = 9,
-        kOutputs = 12
-    };
+    // One float of each hit goes into each of these arrays: corners, their normals (0 where there
+    // are none), the ray, t and uv.
+    static constexpr std::size_t kCorners = 0;
+    static constexpr std::size_t kNormals = 9;
+    static constexpr std::size_t kOrigin = 18;
+    static constexpr std::size_t kDirection = 21;
+    static constexpr std::size_t kT = 24;
+    static constexpr std::size_t kU = 25;
+    static constexpr std::size_t kV = 26;
+    static constexpr std::size_t kInputs = 27;
+    // And comes out of each of these.
+    static constexpr std::size_t kPosition = 0;
+    static constexpr std::size_t kError = 3;
+    static constexpr std::size_t kGeometric = 6;
+    static constexpr std::size_t kShading = 9;
+    static constexpr std::size_t kOutputs = 12;
     // Arrays of `count` floats, rounded up to whole vectors.
     struct Arrays {
         std::array<const float*, kInputs> in{};

@@ -176,7 +176,7 @@ bool BatchTracer::arrive(const Step& step, int hidden, std::size_t i) {
         rays_[i] = Ray{offset_origin(found.surface, ray.direction), ray.direction};
         return true;
     }
-    if (boundary.crossing) step.at.put_inside(path, boundary.crossing->before);
+    if (boundary.crossing != nullptr) step.at.put_inside(path, boundary.crossing->before);
     path.weight *= largest(path.passed);
     SurfaceMaterial* with_maps = found.material->has_maps ? &materials_.emplace_back() : nullptr;
     const ShadingPoint point =
@@ -218,7 +218,7 @@ void BatchTracer::send_branches(const Step& step, std::uint32_t from, const Shad
         onwards.weight = branch.weight;
         onwards.seed = branch_seed(scene, path.seed, branch.kind);
         onwards.direction = direction_group(branch.kind, branch.direction);
-        if (branch.kind == BranchKind::transmitted && boundary.crossing) {
+        if (branch.kind == BranchKind::transmitted && boundary.crossing != nullptr) {
             step.next.put_inside(onwards, boundary.crossing->after);
         } else if (path.interior != kNoInterior) {
             step.next.put_inside(onwards, step.at.interiors[path.interior]);

@@ -100,9 +100,9 @@ private:
     void intersect_groups(const Job& job);
     void note_first_hits(const Job& job);
     bool arrive(const Step& step, int hidden, std::size_t i);
-    void see_sky(const Step& step, PathRay& path, const Ray& ray);
-    void send_branches(const Step& step, std::uint32_t from, const ShadingPoint& point,
-                       const Boundary& boundary);
+    static void see_sky(const Step& step, PathRay& path, const Ray& ray);
+    static void send_branches(const Step& step, std::uint32_t from, const ShadingPoint& point,
+                              const Boundary& boundary);
     void light_points(const Step& step);
     void light_points_by(const Step& step, std::size_t light, int sample);
     void gather_light(const Step& step, std::size_t light, int sample);

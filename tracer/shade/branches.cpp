@@ -59,9 +59,9 @@ void apply_fresnel(const ShadingPoint& point, const Boundary& boundary, Split& s
     const Material& kind = point.kind;
     const float cosine = std::clamp(-glm::dot(point.incoming, point.normal), 0.0f, 1.0f);
     if (kind.reflectance == Reflectance::dielectric) {
-        const float f = kind.thin_walled    ? fresnel_sheet(cosine, 1.0f / kind.ior)
-                        : boundary.crossing ? fresnel_dielectric(cosine, boundary.eta)
-                                            : fresnel_outside(point, cosine);
+        const float f = kind.thin_walled               ? fresnel_sheet(cosine, 1.0f / kind.ior)
+                        : boundary.crossing != nullptr ? fresnel_dielectric(cosine, boundary.eta)
+                                                       : fresnel_outside(point, cosine);
         split.mirrored *= f;
         if (split.through) split.transmitted *= 1.0f - f;
     } else if (split.mirrored != glm::vec3(0.0f)) {

@@ -64,7 +64,7 @@ private:
             share *= passed(scene_, boundary.medium, hit.t);
             path.cone.width = path.cone.at(hit.t);
             if (boundary.is_there || hidden == kMostHidden) {
-                if (boundary.crossing) path.interior = boundary.crossing->before;
+                if (boundary.crossing != nullptr) path.interior = boundary.crossing->before;
                 path.weight *= largest(share);
                 SurfaceMaterial with_maps;
                 const ShadingPoint point =
@@ -97,7 +97,7 @@ private:
     [[nodiscard]] Path onwards(const Path& path, const Branch& branch,
                                const Boundary& boundary) const {
         Path next = path;
-        if (branch.kind == BranchKind::transmitted && boundary.crossing) {
+        if (branch.kind == BranchKind::transmitted && boundary.crossing != nullptr) {
             next.interior = boundary.crossing->after;
         }
         next.weight = branch.weight;
