@@ -45,7 +45,7 @@ BatchTracer::Generation& BatchTracer::generation(int depth) {
 void BatchTracer::trace(const ShadeScene& scene, std::span<const EyeRay> eyes,
                         std::span<TracedRay> results, RayCounts& counts,
                         const std::stop_token& stop) {
-    const Job job{scene, results, counts, stop};
+    const Job job{scene, eyes, results, counts, stop};
     begin(eyes);
     counts.eye += eyes.size();
     follow(job, 1);
@@ -61,7 +61,6 @@ void BatchTracer::begin(std::span<const EyeRay> eyes) {
     first.rays.reserve(eyes.size());
     for (std::size_t i = 0; i < eyes.size(); ++i) {
         PathRay& path = first.rays.emplace_back();
-        path.ray = eyes[i].ray;
         path.parent = static_cast<std::uint32_t>(i);
         path.cone = eyes[i].cone;
         path.seed = eyes[i].seed;
@@ -91,13 +90,7 @@ void BatchTracer::follow(const Job& job, int depth) {
 }
 
 void BatchTracer::follow_portion(const Step& step, std::span<const std::uint32_t> portion) {
-    at_work_.assign(portion.begin(), portion.end());
-    rays_.resize(portion.size());
-    directions_.resize(portion.size());
-    for (std::size_t i = 0; i < portion.size(); ++i) {
-        rays_[i] = step.at.rays[portion[i]].ray;
-        directions_[i] = step.at.rays[portion[i]].direction;
-    }
+    load_rays(step, portion);
     step.next.rays.clear();
     step.next.interiors.clear();
     find_points(step);
@@ -107,6 +100,21 @@ void BatchTracer::follow_portion(const Step& step, std::span<const std::uint32_t
     // In the order in which they left.
     for (const PathRay& ray : step.next.rays)
         step.at.rays[ray.parent].colour += ray.share * (ray.passed * ray.colour);
+}
+
+void BatchTracer::load_rays(const Step& step, std::span<const std::uint32_t> portion) {
+    at_work_.assign(portion.begin(), portion.end());
+    rays_.resize(portion.size());
+    directions_.assign(portion.size(), 0);
+    if (step.depth == 1) {
+        for (std::size_t i = 0; i < portion.size(); ++i)
+            rays_[i] = step.job.eyes[portion[i]].ray;
+        return;
+    }
+    for (std::size_t i = 0; i < portion.size(); ++i) {
+        rays_[i] = step.at.rays[portion[i]].ray;
+        directions_[i] = step.at.rays[portion[i]].direction;
+    }
 }
 
 // Follows the rays at work to where they end, through surfaces that are hidden inside of glass of a
@@ -288,7 +296,7 @@ void BatchTracer::gather_light(const Step& step, std::size_t light, int sample) 
     }
 }
 
-// What arrives of the light along the shadow rays.
+// What arrives of the light along the shadow rays, which all end at it.
 void BatchTracer::find_shares(const Step& step, const PreparedLight& /*light*/) {
     const ShadeScene& scene = step.job.scene;
     const std::span<const Ray> rays = std::span(shadow_rays_).first(arriving_count_);

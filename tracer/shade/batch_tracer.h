@@ -38,7 +38,7 @@ public:
 private:
     // A ray and what comes along it: passed * colour.
     struct PathRay {
-        Ray ray;
+        Ray ray;                   // not of eye rays, which have theirs already
         glm::vec3 share{1.0f};     // of what comes along it, in the colour at its parent's end
         std::uint32_t parent = 0;  // the ray at whose end it begins; an eye ray's number
         RayCone cone;              // at its origin, then at its end
@@ -80,6 +80,7 @@ private:
     // What one call of trace() is about.
     struct Job {
         const ShadeScene& scene;
+        std::span<const EyeRay> eyes;
         std::span<TracedRay> results;
         RayCounts& counts;
         const std::stop_token& stop;
@@ -97,6 +98,7 @@ private:
     void follow(const Job& job, int depth);
     void follow_portion(const Step& step, std::span<const std::uint32_t> portion);
     void find_points(const Step& step);
+    void load_rays(const Step& step, std::span<const std::uint32_t> portion);
     void intersect_groups(const Job& job);
     void note_first_hits(const Job& job);
     bool arrive(const Step& step, int hidden, std::size_t i);

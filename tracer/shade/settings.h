@@ -21,8 +21,8 @@ enum class Sampling {
 enum class PixelFilter { box, tent, gaussian, mitchell };
 
 struct RenderSettings {
-    // Longest chain of rays; the eye ray is depth 1. Each takes about 2 kB of a thread's stack, so
-    // that some thousands are too many.
+    // Longest chain of rays; the eye ray is depth 1. Each takes up to 1 MB of memory a thread,
+    // where all rays split, and about 1 kB of its stack, so that some thousands are too many.
     int depth = 5;
     bool shadows = true;
     bool reflections = true;
