@@ -649,6 +649,28 @@ TEST(Accel, TakesTheTreesOfTheOneBefore) {
     EXPECT_FALSE(Accel(shared, {}, &before).intersect(ray).has_value());
 }
 
+TEST(Accel, TreesMadeSoonerGiveTheSameHits) {
+    Scene scene = shapes_scene();
+    place_mesh(scene, soup_data(4, 20000, 0.1));
+    const auto shared = std::make_shared<const Scene>(scene);
+    const Accel slow(shared);
+    const Accel soon(shared, {.quality = TreeQuality::first});
+    for (const Ray& ray : rays_through(slow.bounds(), 3, 5000))
+        ASSERT_EQ(soon.intersect(ray), slow.intersect(ray)) << to_text(ray);
+}
+
+TEST(Accel, TreesMadeSoonerAreNotTakenForBetterOnes) {
+    Scene scene;
+    place_mesh(scene, soup_data(4, 20000, 0.1));
+    const auto shared = std::make_shared<const Scene>(scene);
+    const Accel slow(shared);
+    const Accel soon(shared, {.quality = TreeQuality::first});
+    EXPECT_NE(soon.stats().nodes, slow.stats().nodes);
+    EXPECT_EQ(Accel(shared, {}, &soon).stats().nodes, slow.stats().nodes);
+    EXPECT_EQ(Accel(shared, {.quality = TreeQuality::first}, &slow).stats().nodes,
+              slow.stats().nodes);
+}
+
 TEST(Accel, RemovedAndAddedObjects) {
     Scene scene = shapes_scene();
     const Accel before(std::make_shared<const Scene>(scene));

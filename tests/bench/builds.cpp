@@ -14,10 +14,10 @@ namespace {
 // Ours: the tree that picks work with at once, and the one that frames are traced with.
 enum class OurTree { first, quality };
 
-// There is one builder so far.
-double build_ours(const View& view, OurTree, int threads) {
+double build_ours(const View& view, OurTree tree, int threads) {
     BuildOptions options;
     options.threads = threads;
+    options.quality = tree == OurTree::first ? TreeQuality::first : TreeQuality::many_rays;
     std::unique_ptr<Accel> accel;
     return seconds_of([&] { accel = std::make_unique<Accel>(view.scene, options); });
 }

@@ -15,9 +15,16 @@
 
 namespace raypick {
 
+// What the trees over primitives are built for; hits are the same on all.
+enum class TreeQuality {
+    first,      // to be there soon, for some picks: three times as fast to build
+    many_rays,  // frames
+};
+
 struct BuildOptions {
-    int threads = 0;       // 0: all cores. The tree is the same for any number
-    std::stop_token stop;  // building then throws Cancelled
+    int threads = 0;         // 0: all cores. The tree is the same for any number
+    std::stop_token stop{};  // building then throws Cancelled
+    TreeQuality quality = TreeQuality::many_rays;
 };
 
 struct AccelStats {
@@ -34,8 +41,8 @@ struct AccelStats {
 class Accel {
 public:
     // Builds for a snapshot of a scene. Meshes whose arrays also stand in `reuse` keep their trees
-    // from there: moving an object rebuilds the top level only. Throws Error (check_scene) or
-    // Cancelled.
+    // from there, unless these are of a lower quality than asked for: moving an object rebuilds
+    // the top level only. Throws Error (check_scene) or Cancelled.
     explicit Accel(std::shared_ptr<const Scene> scene, const BuildOptions& options = {},
                    const Accel* reuse = nullptr);
     ~Accel();

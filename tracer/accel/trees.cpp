@@ -76,9 +76,11 @@ TreeSource source_of(const ConeSet& set) {
             kWideLeaves};
 }
 
-std::shared_ptr<const PrimitiveTree> find_tree(const TreeList& known, const TreeSource& source) {
+std::shared_ptr<const PrimitiveTree> find_tree(const TreeList& known, const TreeSource& source,
+                                               TreeQuality quality) {
     const auto found = std::find_if(known.begin(), known.end(), [&](const auto& tree) {
-        return tree->arrays == source.arrays && tree->count == source.count;
+        return tree->arrays == source.arrays && tree->count == source.count &&
+               tree->quality >= quality;
     });
     return found != known.end() ? *found : nullptr;
 }
@@ -88,8 +90,11 @@ std::shared_ptr<const PrimitiveTree> build_tree(const TreeSource& source,
     PrimitiveTree tree;
     tree.arrays = source.arrays;
     tree.count = source.count;
-    tree.bvh = widen(build_bvh(source.count, source.boxes,
-                               {.costs = source.costs, .threads = threads, .stop = options.stop}));
+    tree.quality = options.quality;
+    const BvhOptions how{.costs = source.costs, .threads = threads, .stop = options.stop};
+    tree.bvh = widen(options.quality == TreeQuality::first
+                         ? build_bvh_fast(source.count, source.boxes, how)
+                         : build_bvh(source.count, source.boxes, how));
     return std::make_shared<const PrimitiveTree>(std::move(tree));
 }
 
@@ -117,7 +122,8 @@ TreeList build_list(const Things& things, const BuildOptions& options, const Tre
     TreeList trees;
     for (const auto& thing : things) {
         sources.push_back(source_of(thing));
-        trees.push_back(known != nullptr ? find_tree(*known, sources.back()) : nullptr);
+        trees.push_back(known != nullptr ? find_tree(*known, sources.back(), options.quality)
+                                         : nullptr);
     }
     build_missing(trees, sources, options);
     return trees;

@@ -17,6 +17,7 @@ namespace raypick {
 struct PrimitiveTree {
     std::array<const void*, 2> arrays{};
     std::size_t count = 0;  // of primitives
+    TreeQuality quality = TreeQuality::many_rays;
     WideBvh bvh;
 };
 

@@ -50,11 +50,8 @@ OpenedScene open_scene(const SceneOptions& options) {
     return opened;
 }
 
-BuiltAccel build_timed(const OpenedScene& opened, int threads, const std::stop_token& stop) {
+BuiltAccel build_timed(const OpenedScene& opened, const BuildOptions& options) {
     const Stopwatch watch;
-    BuildOptions options;
-    options.threads = threads;
-    options.stop = stop;
     BuiltAccel built;
     built.accel = std::make_shared<const Accel>(opened.scene, options);
     built.build_seconds = watch.seconds();

@@ -32,8 +32,7 @@ struct BuiltAccel {
 };
 
 // Throws Cancelled.
-BuiltAccel build_timed(const OpenedScene& opened, int threads = 0,
-                       const std::stop_token& stop = {});
+BuiltAccel build_timed(const OpenedScene& opened, const BuildOptions& options = {});
 // Its size and time.
 void print_report(const BuiltAccel& built);
 

@@ -85,7 +85,9 @@ std::vector<PickQuestion> questions_of(const PickCommand& command, const PickAns
 
 int run_pick(const PickCommand& command) {
     const OpenedScene opened = open_scene(command.scene);
-    const BuiltAccel built = build_timed(opened);
+    // A few picks are sooner done than a tree for many.
+    const BuiltAccel built = build_timed(
+        opened, {.quality = command.stream ? TreeQuality::many_rays : TreeQuality::first});
     if (command.scene.verbose) print_report(built);
     const PickAnswerer answerer(built.accel, command.camera, command.size, command.all);
     StandardOutput output;

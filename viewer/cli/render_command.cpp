@@ -47,7 +47,8 @@ void show_progress(const RenderJob& job, ProgressBar& bar) {
 Frame traced(const RenderCommand& command, const OpenedScene& opened, const Camera& camera,
              const Interrupt& interrupt, ProgressBar& bar) {
     bar.show("building the tree");
-    const BuiltAccel built = build_timed(opened, command.settings.threads, interrupt.token());
+    const BuiltAccel built =
+        build_timed(opened, {.threads = command.settings.threads, .stop = interrupt.token()});
     bar.clear();
     if (command.scene.verbose) print_report(built);
     constexpr bool kProgressive = false;  // nobody looks at it before it is done
