@@ -57,10 +57,9 @@ void BatchTracer::trace(const ShadeScene& scene, std::span<const EyeRay> eyes,
 void BatchTracer::begin(std::span<const EyeRay> eyes) {
     Generation& first = generation(1);
     first.interiors.clear();
-    first.rays.clear();
-    first.rays.reserve(eyes.size());
+    first.rays.assign(eyes.size(), new_ray_);
     for (std::size_t i = 0; i < eyes.size(); ++i) {
-        PathRay& path = first.rays.emplace_back();
+        PathRay& path = first.rays[i];
         path.parent = static_cast<std::uint32_t>(i);
         path.cone = eyes[i].cone;
         path.seed = eyes[i].seed;
@@ -189,7 +188,8 @@ bool BatchTracer::arrive(const Step& step, int hidden, std::size_t i) {
     SurfaceMaterial* with_maps = found.material->has_maps ? &materials_.emplace_back() : nullptr;
     const ShadingPoint point =
         shading_point(scene, found, ray.direction, path.cone.width, with_maps);
-    RayEnd& end = points_.emplace_back();
+    points_.push_back(new_end_);
+    RayEnd& end = points_.back();
     end.ray = at_work_[i];
     set_lit_point(point, end.point);
     if (step.depth == 1) step.job.results[path.parent].normal = point.normal;
@@ -218,7 +218,8 @@ void BatchTracer::send_branches(const Step& step, std::uint32_t from, const Shad
     for (std::size_t i = 0; i < branches.count; ++i) {
         const Branch& branch = branches.branch[i];
         count_branch(step.job.counts, branch.kind, step.depth + 1);
-        PathRay& onwards = step.next.rays.emplace_back();
+        step.next.rays.push_back(new_ray_);
+        PathRay& onwards = step.next.rays.back();
         onwards.ray = leaving(point, branch.direction);
         onwards.share = branch.share;
         onwards.parent = from;

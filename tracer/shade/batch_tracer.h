@@ -103,14 +103,19 @@ private:
     void note_first_hits(const Job& job);
     bool arrive(const Step& step, int hidden, std::size_t i);
     static void see_sky(const Step& step, PathRay& path, const Ray& ray);
-    static void send_branches(const Step& step, std::uint32_t from, const ShadingPoint& point,
-                              const Boundary& boundary);
+    void send_branches(const Step& step, std::uint32_t from, const ShadingPoint& point,
+                       const Boundary& boundary);
     void light_points(const Step& step);
     void light_points_by(const Step& step, std::size_t light, int sample);
     void gather_light(const Step& step, std::size_t light, int sample);
     void find_shares(const Step& step, const PreparedLight& light);
 
     std::deque<Generation> generations_;  // by depth - 1
+
+    // What new ones are copies of: emplace_back() would zero them first, by an instruction that
+    // takes its time.
+    PathRay new_ray_;
+    RayEnd new_end_;
 
     // Of the portion at work.
     std::vector<std::uint32_t> at_work_;  // rays on their way
