@@ -214,9 +214,9 @@ void BatchTracer::send_branches(const Step& step, std::uint32_t from, const Shad
                                 const Boundary& boundary) {
     const PathRay& path = step.at.rays[from];
     const ShadeScene& scene = step.job.scene;
-    const Branches branches = branches_at(scene, point, boundary, path.weight);
-    for (std::size_t i = 0; i < branches.count; ++i) {
-        const Branch& branch = branches.branch[i];
+    find_branches(scene, point, boundary, path.weight, branches_);
+    for (std::size_t i = 0; i < branches_.count; ++i) {
+        const Branch& branch = branches_.branch[i];
         count_branch(step.job.counts, branch.kind, step.depth + 1);
         step.next.rays.push_back(new_ray_);
         PathRay& onwards = step.next.rays.back();

@@ -125,6 +125,7 @@ private:
     std::vector<FoundHit> found_;
     TriangleSurfaces triangles_;
     Crossing crossing_;
+    Branches branches_;
     std::vector<RayEnd> points_;
     std::vector<SurfaceMaterial> materials_;  // with maps, of some of the points
     std::vector<Arriving> arriving_;  // the first arriving_count_ are in use, as of shadow_rays_

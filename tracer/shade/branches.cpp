@@ -89,33 +89,39 @@ Split split_at(const RenderSettings& settings, const ShadingPoint& point,
 // Collects what is worth a ray.
 class Collector {
 public:
-    Collector(float cutoff, float weight) : cutoff_(cutoff), weight_(weight) {}
+    Collector(float cutoff, float weight, Branches& found)
+        : cutoff_(cutoff), weight_(weight), found_(found) {
+        found_.count = 0;
+    }
 
     // `direction` is asked only for a ray that is shot.
     template <typename Direction>
     void add(BranchKind kind, const glm::vec3& share, const Direction& direction) {
         const float weight = weight_ * largest(share);
         if (cutoff_ != 0.0f && !(weight > cutoff_)) return;
-        found_.branch[found_.count++] = {kind, direction(), share, weight};
+        Branch& branch = found_.branch[found_.count++];
+        branch.kind = kind;
+        branch.direction = direction();
+        branch.share = share;
+        branch.weight = weight;
     }
-    [[nodiscard]] const Branches& found() const { return found_; }
 
 private:
     float cutoff_;
     float weight_;
-    Branches found_;
+    Branches& found_;
 };
 
 }  // namespace
 
-Branches branches_at(const ShadeScene& scene, const ShadingPoint& point, const Boundary& boundary,
-                     float weight) {
+void find_branches(const ShadeScene& scene, const ShadingPoint& point, const Boundary& boundary,
+                   float weight, Branches& found) {
     const RenderSettings& settings = scene.settings;
     const float opacity = point.material.opacity;
     const Material& kind = point.kind;
     const bool transmits = settings.refractions && kind.transmits();
     const bool mirrors = settings.reflections && (kind.reflects() || kind.transmits());
-    Collector collector(settings.cutoff, weight);
+    Collector collector(settings.cutoff, weight, found);
     if (transmits || mirrors) {
         const Split split = split_at(settings, point, boundary);
         if (transmits && split.through) {
@@ -131,7 +137,6 @@ Branches branches_at(const ShadeScene& scene, const ShadingPoint& point, const B
         collector.add(BranchKind::straight, glm::vec3(1.0f - opacity),
                       [&] { return point.incoming; });
     }
-    return collector.found();
 }
 
 std::uint64_t branch_seed(const ShadeScene& scene, std::uint64_t seed, BranchKind kind) {

@@ -37,8 +37,8 @@ struct Branches {
 
 // The rays from a point where a ray arrived that can add `weight` to its pixel; not those below the
 // settings' cutoff.
-Branches branches_at(const ShadeScene& scene, const ShadingPoint& point, const Boundary& boundary,
-                     float weight);
+void find_branches(const ShadeScene& scene, const ShadingPoint& point, const Boundary& boundary,
+                   float weight, Branches& found);
 
 inline float largest(const glm::vec3& v) {
     return std::max(std::max(v.x, v.y), v.z);

@@ -84,7 +84,8 @@ private:
     glm::vec3 shade(const ShadingPoint& point, const Boundary& boundary, const Path& path) {
         glm::vec3 colour = point.material.opacity * local(point, path);
         if (path.depth >= scene_.settings.depth) return colour;
-        const Branches branches = branches_at(scene_, point, boundary, path.weight);
+        Branches branches;
+        find_branches(scene_, point, boundary, path.weight, branches);
         for (std::size_t i = 0; i < branches.count; ++i) {
             const Branch& branch = branches.branch[i];
             const Path next = onwards(path, branch, boundary);
