@@ -454,10 +454,14 @@ TEST(SamplingTest, ACancelledRefinementKeepsWhatItHas) {
 // Numbers that are fine by themselves, but whose sum is too large for a float.
 TEST(SamplingTest, PixelsThatAreNoNumberAreBlackAndCounted) {
     Scene scene;
+    // The brightest of lights on the brightest of surfaces is more than a float holds.
     Material bad = black_material();
-    bad.emissive = {1.0f, 3e38f, 1.0f};
-    bad.ambient = {1.0f, 3e38f, 1.0f};
-    scene.ambient = glm::vec3(1.0f);
+    bad.diffuse = {1.0f, 1e6f, 1.0f};
+    PointLight light;
+    light.position = Camera{}.eye;
+    light.colour = glm::vec3(1e18f);
+    light.attenuation = {1e-18, 0.0, 0.0};
+    scene.lights = {light};
     place(scene, Sphere{{0, 0, 0}, 1.0}, add_material(scene, bad));
     const auto accel = shared_accel(std::move(scene));
     const ImageSize size{21, 21};

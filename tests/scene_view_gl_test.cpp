@@ -84,7 +84,8 @@ TEST_F(SceneViewTest, TracedPicksAreWhatTheFinishedPictureShows) {
 
 TEST_F(SceneViewTest, TracedPicksAreWhatTheCoarsePictureShows) {
     settings_.threads = 1;
-    settings_.depth = 14;  // slow enough to be caught in the middle
+    settings_.depth = 24;  // slow enough to be caught in the middle
+    settings_.cutoff = 0.0f;
     ASSERT_TRUE(prepare_until(&settings_, [&] { return traced(); }));
     view_->cancel_trace();
     ASSERT_TRUE(
@@ -125,7 +126,8 @@ TEST_F(SceneViewTest, AMovingCameraIsTracedToo) {
 }
 
 TEST_F(SceneViewTest, CancellingOnTheWayToAnotherViewDoesNotTraceThatOne) {
-    settings_.depth = 14;
+    settings_.depth = 24;
+    settings_.cutoff = 0.0f;
     ASSERT_TRUE(prepare_until(&settings_, [&] { return traced(); }));
     view_->camera().orbit(0.5, 0.0);
     view_->cancel_trace();
