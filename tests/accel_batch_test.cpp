@@ -133,6 +133,30 @@ TEST_P(AccelBatch, TrianglesSmallerThanAPixel) {
                          coherent_rays(accel.bounds(), {64, 64}, Projection::perspective, 5));
 }
 
+// Many small ones, some that overlap, large ones around the eye, and all of it stretched as well.
+TEST_P(AccelBatch, SphereSets) {
+    Random random(12);
+    std::vector<glm::vec4> spheres;
+    for (int i = 0; i < 3000; ++i) {
+        const double size = i % 10 == 0 ? 0.3 : 0.02;
+        spheres.emplace_back(glm::vec3(random.point(glm::dvec3(-1.0), glm::dvec3(1.0))),
+                             static_cast<float>(size * (0.2 + random.unit())));
+    }
+    spheres.emplace_back(0.0f, 0.0f, 0.0f, 1.4f);
+    spheres.push_back(spheres.front());
+    for (const Sides sides : {Sides::both, Sides::front_only, Sides::back_only}) {
+        Scene scene;
+        const SetId set = add_sphere_set(scene, make_sphere_set("set", spheres));
+        place(scene, SphereSetInstance{set});
+        place(scene, SphereSetInstance{set}, kNoMaterial,
+              translate({3, 0, 1}) * rotate(70.0, {1, 2, 3}) * scale({1.5, -0.5, 1.0}));
+        for (Object& object : scene.objects)
+            object.sides = sides;
+        expect_all_ways(scene, 14);
+        if (HasFatalFailure()) return;
+    }
+}
+
 TEST_P(AccelBatch, AllShapesAndInstances) {
     expect_all_ways(mixed_scene(), 3);
 }

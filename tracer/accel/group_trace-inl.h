@@ -9,6 +9,7 @@
 #include "tracer/accel/decide_triangles-inl.h"
 #include "tracer/accel/group_boxes-inl.h"
 #include "tracer/accel/group_search-inl.h"
+#include "tracer/accel/group_spheres-inl.h"
 #include "tracer/accel/group_triangles-inl.h"
 #include "tracer/accel/single_ray-inl.h"
 
@@ -80,14 +81,15 @@ private:
         const Object& object = state_.scene->objects[entry.object];
         if ((object.mask & query_.mask) == 0) return;
         const Instance& instance = state_.instances[entry.object];
-        const auto* mesh = std::get_if<MeshInstance>(&object.shape);
-        const float reach = mesh != nullptr ? largest_coordinate(instance.tree->bvh.bounds) : 0.0f;
-        if (mesh == nullptr || !(reach < kFarthestReach)) {
+        const bool in_groups = std::holds_alternative<MeshInstance>(object.shape) ||
+                               std::holds_alternative<SphereSetInstance>(object.shape);
+        const float reach = in_groups ? largest_coordinate(instance.tree->bvh.bounds) : 0.0f;
+        if (!in_groups || !(reach < kFarthestReach)) {
             each_on_its_own(entry, mask);
             return;
         }
         if (instance.identity) {
-            enter_mesh(entry, world, mask);
+            enter_tree(entry, world, mask);
             return;
         }
         GroupRays turned;
@@ -105,42 +107,54 @@ private:
             if (std::popcount(same) <= kFewRays) {
                 each_on_its_own(entry, same);
             } else {
-                enter_mesh(entry, GroupSpace(turned, same, instance.slop, reach), same);
+                enter_tree(entry, GroupSpace(turned, same, instance.slop, reach), same);
             }
         }
     }
 
-    void enter_mesh(const TopEntry& entry, const GroupSpace& space, RayMask mask) {
-        const Instance& instance = state_.instances[entry.object];
+    void enter_tree(const TopEntry& entry, const GroupSpace& space, RayMask mask) {
         const Object& object = state_.scene->objects[entry.object];
-        const Mesh& mesh = state_.scene->meshes[std::get<MeshInstance>(object.shape).mesh];
-        const WideBvh& bvh = instance.tree->bvh;
         const ShownSides shown{shows(object.sides, true) && shows(query_.sides, true),
                                shows(object.sides, false) && shows(query_.sides, false)};
         if (!shown.front && !shown.back) return;
+        if (const auto* instance = std::get_if<MeshInstance>(&object.shape)) {
+            const Mesh& mesh = state_.scene->meshes[instance->mesh];
+            search_tree(entry, space, shown, mask, [&](std::uint32_t primitive) HWY_ATTR {
+                const glm::uvec3 corner = mesh.triangles[primitive];
+                return group_triangle(space, mesh.positions[corner.x], mesh.positions[corner.y],
+                                      mesh.positions[corner.z]);
+            });
+        } else {
+            const SetId set = std::get<SphereSetInstance>(object.shape).set;
+            const std::span<const glm::vec4> spheres = state_.scene->sphere_sets[set].spheres;
+            search_tree(entry, space, shown, mask, [&](std::uint32_t primitive) HWY_ATTR {
+                return group_sphere(space, spheres[primitive]);
+            });
+        }
+    }
+
+    // `prepared(primitive)` gives what judge() takes.
+    template <typename Prepared>
+    HWY_INLINE void search_tree(const TopEntry& entry, const GroupSpace& space,
+                                const ShownSides& shown, RayMask mask, const Prepared& prepared) {
+        const Instance& instance = state_.instances[entry.object];
+        const WideBvh& bvh = instance.tree->bvh;
         walk_group(
             bvh, entry.part, space, search_.limits, mask, kFewRays,
             [&](const WideRef& leaf, RayMask met) HWY_ATTR {
                 for (std::uint32_t i = 0; i < leaf.count; ++i) {
-                    meet(entry.object, mesh, bvh.indices[leaf.first + i], space, shown,
-                         instance.holes, met);
+                    const std::uint32_t primitive = bvh.indices[leaf.first + i];
+                    const auto shape = prepared(primitive);
+                    each_vector(met, [&](std::size_t ray, RayMask bits) HWY_ATTR {
+                        const Verdict verdict = judge(space, search_.limits, shape, shown, ray);
+                        if ((verdict.may & bits) == 0) return;
+                        settle(verdict, ray, bits, entry.object, primitive, instance.holes);
+                    });
                 }
             },
             [&](const WideRef& part, RayMask met) HWY_ATTR {
                 each_on_its_own({entry.object, part}, met);
             });
-    }
-
-    HWY_INLINE void meet(std::uint32_t object, const Mesh& mesh, std::uint32_t primitive,
-                         const GroupSpace& space, const ShownSides& shown, bool holes,
-                         RayMask mask) {
-        const glm::uvec3 corner = mesh.triangles[primitive];
-        const GroupTriangle triangle = group_triangle(
-            space, mesh.positions[corner.x], mesh.positions[corner.y], mesh.positions[corner.z]);
-        each_vector(mask, [&](std::size_t ray, RayMask bits) HWY_ATTR {
-            const Verdict verdict = judge(space, search_.limits, triangle, shown, ray);
-            if ((verdict.may & bits) != 0) settle(verdict, ray, bits, object, primitive, holes);
-        });
     }
 
     void settle(const Verdict& verdict, std::size_t ray, RayMask bits, std::uint32_t object,
