@@ -1,5 +1,5 @@
 // The trees over boxes: what every tree must be, and what the builders promise about theirs.
-#include "tracer/accel/bvh.h"
+#include "tracer/bvh/bvh.h"
 #include "tests/random.h"
 #include "tracer/error.h"
 

@@ -3,7 +3,7 @@
 
 #include "tracer/accel/hit.h"
 #include "tracer/accel/trees.h"
-#include "tracer/accel/wide_bvh.h"
+#include "tracer/bvh/wide_bvh.h"
 #include "tracer/geometry/transform.h"
 #include "tracer/scene/scene.h"
 

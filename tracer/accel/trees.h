@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tracer/accel/accel.h"
-#include "tracer/accel/wide_bvh.h"
+#include "tracer/bvh/wide_bvh.h"
 #include "tracer/scene/scene.h"
 
 #include <array>

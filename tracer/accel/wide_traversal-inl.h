@@ -6,7 +6,7 @@
 #define RAYPICK_WIDE_TRAVERSAL_INL_H
 #endif
 
-#include "tracer/accel/wide_bvh.h"
+#include "tracer/bvh/wide_bvh.h"
 
 #include <glm/vec3.hpp>
 

@@ -1,8 +1,8 @@
 // Small trees over leaves that are in a good order already.
 #pragma once
 
-#include "tracer/accel/bvh.h"
-#include "tracer/accel/float4.h"
+#include "tracer/bvh/bvh.h"
+#include "tracer/bvh/float4.h"
 
 #include <cstdint>
 #include <span>

@@ -4,7 +4,7 @@
 // Sengupta, Luebke, Manocha, "Fast BVH Construction on GPUs", 2009.
 #pragma once
 
-#include "tracer/accel/box_refs.h"
+#include "tracer/bvh/box_refs.h"
 
 #include <cstdint>
 #include <vector>

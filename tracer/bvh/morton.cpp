@@ -1,4 +1,4 @@
-#include "tracer/accel/morton.h"
+#include "tracer/bvh/morton.h"
 
 #include "tracer/error.h"
 #include "tracer/parallel/parallel.h"

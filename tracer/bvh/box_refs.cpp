@@ -1,4 +1,4 @@
-#include "tracer/accel/box_refs.h"
+#include "tracer/bvh/box_refs.h"
 
 #include "tracer/error.h"
 #include "tracer/parallel/parallel.h"

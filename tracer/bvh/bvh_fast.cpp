@@ -3,10 +3,10 @@
 //
 // Source: Pantaleoni and Luebke, "HLBVH: Hierarchical LBVH Construction for Real-Time Ray Tracing
 // of Dynamic Geometry", 2010.
-#include "tracer/accel/bvh.h"
-#include "tracer/accel/bvh_build.h"
-#include "tracer/accel/morton.h"
-#include "tracer/accel/treelet.h"
+#include "tracer/bvh/bvh.h"
+#include "tracer/bvh/bvh_build.h"
+#include "tracer/bvh/morton.h"
+#include "tracer/bvh/treelet.h"
 #include "tracer/error.h"
 #include "tracer/parallel/parallel.h"
 

@@ -1,10 +1,10 @@
 // Builds from the top: each range of boxes is split in two by the surface area heuristic.
-#include "tracer/accel/bvh.h"
+#include "tracer/bvh/bvh.h"
 
-#include "tracer/accel/box_refs.h"
-#include "tracer/accel/bvh_build.h"
-#include "tracer/accel/parallel_split.h"
-#include "tracer/accel/sah_split.h"
+#include "tracer/bvh/box_refs.h"
+#include "tracer/bvh/bvh_build.h"
+#include "tracer/bvh/parallel_split.h"
+#include "tracer/bvh/sah_split.h"
 #include "tracer/error.h"
 #include "tracer/parallel/parallel.h"
 

@@ -3,7 +3,7 @@
 // Source: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007.
 #pragma once
 
-#include "tracer/accel/box_refs.h"
+#include "tracer/bvh/box_refs.h"
 
 #include <array>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "tracer/accel/wide_bvh.h"
+#include "tracer/bvh/wide_bvh.h"
 
 #include <cstddef>
 #include <limits>

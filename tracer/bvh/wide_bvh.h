@@ -4,7 +4,7 @@
 // Multi-branching BVHs", 2008.
 #pragma once
 
-#include "tracer/accel/bvh.h"
+#include "tracer/bvh/bvh.h"
 
 #include <array>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // What the builders share.
 #pragma once
 
-#include "tracer/accel/box_refs.h"
-#include "tracer/accel/bvh.h"
+#include "tracer/bvh/box_refs.h"
+#include "tracer/bvh/bvh.h"
 
 namespace raypick {
 

@@ -1,4 +1,4 @@
-#include "tracer/accel/parallel_split.h"
+#include "tracer/bvh/parallel_split.h"
 
 #include "tracer/error.h"
 #include "tracer/parallel/parallel.h"

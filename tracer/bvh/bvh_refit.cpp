@@ -1,5 +1,5 @@
-#include "tracer/accel/box_refs.h"
-#include "tracer/accel/bvh.h"
+#include "tracer/bvh/box_refs.h"
+#include "tracer/bvh/bvh.h"
 #include "tracer/error.h"
 #include "tracer/parallel/parallel.h"
 

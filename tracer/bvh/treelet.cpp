@@ -1,4 +1,4 @@
-#include "tracer/accel/treelet.h"
+#include "tracer/bvh/treelet.h"
 
 #include <array>
 #include <cassert>

@@ -1,8 +1,8 @@
 // The boxes that a tree is built over, as builders move them about.
 #pragma once
 
-#include "tracer/accel/bvh.h"
-#include "tracer/accel/float4.h"
+#include "tracer/bvh/bvh.h"
+#include "tracer/bvh/float4.h"
 
 #include <cstddef>
 #include <cstdint>

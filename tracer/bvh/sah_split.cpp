@@ -1,4 +1,4 @@
-#include "tracer/accel/sah_split.h"
+#include "tracer/bvh/sah_split.h"
 
 #include <algorithm>
 #include <bit>

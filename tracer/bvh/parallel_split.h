@@ -1,9 +1,9 @@
 // Splitting a large range of boxes on several threads.
 #pragma once
 
-#include "tracer/accel/box_refs.h"
-#include "tracer/accel/bvh.h"
-#include "tracer/accel/sah_split.h"
+#include "tracer/bvh/box_refs.h"
+#include "tracer/bvh/bvh.h"
+#include "tracer/bvh/sah_split.h"
 
 #include <cstddef>
 #include <span>
