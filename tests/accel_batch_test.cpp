@@ -185,6 +185,29 @@ TEST_P(AccelBatch, EdgesVerticesAndTies) {
         ASSERT_EQ(complaint(hits[i], brute.all(rays[i])), "") << to_text(rays[i]);
 }
 
+// Shadow rays that begin on triangles, some of which have no area and are never hit.
+TEST_P(AccelBatch, RaysThatBeginOnTheSurface) {
+    Scene scene;
+    MeshData data = soup_data(15, 400, 0.4);
+    for (std::size_t i = 0; i < 40; ++i) {
+        glm::uvec3 flat = data.triangles[i];
+        flat.z = flat.y;
+        data.triangles.push_back(flat);
+    }
+    place_mesh(scene, data);
+    scene.objects[0].sides = Sides::front_only;
+    place(scene, MeshInstance{0}, kNoMaterial, translate({0.5, 0, 0}) * rotate(50, {1, 1, 0}));
+    const Accel accel = accel_of(scene);
+    std::vector<Ray> rays;
+    for (const Ray& eye : coherent_rays(accel.bounds(), {32, 32}, Projection::perspective, 3)) {
+        const auto hit = accel.intersect(eye);
+        if (!hit) continue;
+        rays.push_back(ray_towards(eye.at(hit->t), {3, 4, 5}));
+    }
+    ASSERT_GT(rays.size(), 200u);
+    expect_as_one_by_one(accel, rays);
+}
+
 TEST_P(AccelBatch, TinyAndHugeScenesAndFarOnes) {
     for (const double size : {1e-30, 1e-18, 1e-6, 1e6, 1e14, 1e20}) {
         SCOPED_TRACE(size);

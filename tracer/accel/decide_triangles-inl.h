@@ -9,6 +9,7 @@
 
 #include "tracer/geometry/shapes.h"
 
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include <array>
@@ -51,7 +52,19 @@ struct TrianglePairs {
             offset[2][i][lane] = static_cast<double>(c[k]) - origin[k];
         }
     }
+
+    // Numbers, whichever, from this lane on.
+    HWY_INLINE void fill_from(std::size_t lane) {
+        for (; lane < kDoublesAtOnce; ++lane)
+            set(lane, glm::dvec3(0.0), glm::dvec3(1.0), glm::vec3(0.0f), glm::vec3(0.0f),
+                glm::vec3(0.0f));
+    }
 };
+
+// As intersect_triangle sees it.
+inline bool has_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    return glm::cross(b - a, c - a) != glm::dvec3(0.0);
+}
 
 struct TriangleAnswers {
     using Numbers = std::array<double, kDoublesAtOnce>;

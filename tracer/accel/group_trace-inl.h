@@ -164,10 +164,50 @@ private:
         } else {
             const RayMask sure = holes ? 0 : verdict.sure & bits;
             search_.block(sure << ray);
-            each_ray(verdict.may & bits & ~sure, [&](std::size_t i) HWY_ATTR {
-                AnyOfOne one{search_, ray + i};
-                trace_primitive(state_, object, primitive, rays_[ray + i], query_, one);
+            const RayMask open = (verdict.may & bits & ~sure) << ray;
+            if (open == 0) return;
+            if (!holes &&
+                std::holds_alternative<MeshInstance>(state_.scene->objects[object].shape)) {
+                decide_open(object, primitive, open);
+                return;
+            }
+            each_ray(open, [&](std::size_t i) HWY_ATTR {
+                AnyOfOne one{search_, i};
+                trace_primitive(state_, object, primitive, rays_[i], query_, one);
             });
+        }
+    }
+
+    // Rays that the bounds leave open, as all do that begin on the triangle itself.
+    void decide_open(std::uint32_t index, std::uint32_t primitive, RayMask mask) {
+        const Object& object = state_.scene->objects[index];
+        const Mesh& mesh = state_.scene->meshes[std::get<MeshInstance>(object.shape).mesh];
+        const glm::uvec3 corner = mesh.triangles[primitive];
+        const glm::vec3& a = mesh.positions[corner.x];
+        const glm::vec3& b = mesh.positions[corner.y];
+        const glm::vec3& c = mesh.positions[corner.z];
+        if (!has_area(a, b, c)) return;
+        TrianglePairs pairs;
+        TriangleAnswers answers;
+        std::array<std::size_t, kDoublesAtOnce> lanes{};
+        while (mask != 0) {
+            std::size_t count = 0;
+            for (; mask != 0 && count < kDoublesAtOnce; mask &= mask - 1) {
+                lanes[count] = static_cast<std::size_t>(std::countr_zero(mask));
+                const ObjectRay local = object_ray(state_.instances[index], rays_[lanes[count]]);
+                pairs.set(count++, local.origin, local.direction, a, b, c);
+            }
+            pairs.fill_from(count);
+            decide(pairs, answers);
+            for (std::size_t i = 0; i < count; ++i) {
+                const Ray& ray = rays_[lanes[i]];
+                const auto t = static_cast<float>(answers.t[i]);
+                const bool front = answers.determinant[i] > 0.0;
+                if (((answers.hit >> i) & 1) != 0 && t > ray.t_min && t < ray.t_max &&
+                    shows(object.sides, front) && shows(query_.sides, front)) {
+                    search_.block(RayMask{1} << lanes[i]);
+                }
+            }
         }
     }
 
@@ -295,8 +335,7 @@ inline RayMask decide_sole(const AccelState& state, const ClosestOfGroup& search
             lanes[count++] = ray;
         }
         if (count == 0) break;
-        for (std::size_t i = count; i < kDoublesAtOnce; ++i)
-            pairs.set(i, glm::dvec3(0.0), glm::dvec3(1.0), {}, {}, {});
+        pairs.fill_from(count);
         decide(pairs, answers);
         for (std::size_t i = 0; i < count; ++i) {
             const std::size_t ray = lanes[i];
