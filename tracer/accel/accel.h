@@ -37,7 +37,7 @@ struct AccelStats {
 
 // Two levels: one tree a mesh or set, shared by its instances and by later Accels of an edited
 // scene, and one tree over the objects. All queries are const and may run on many threads at once.
-// A ray with a NaN hits nothing.
+// A ray with a NaN hits nothing; a t_min below 0 counts as 0.
 class Accel {
 public:
     // Builds for a snapshot of a scene. Meshes whose arrays also stand in `reuse` keep their trees

@@ -16,6 +16,9 @@ HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+// No more rays than these are followed one by one.
+inline constexpr int kFewRays = 3;
+
 inline constexpr float kGrowGroup = 1.0f + 8.0f * 5.9604645e-8f;
 inline constexpr float kShrinkGroup = 1.0f - 8.0f * 5.9604645e-8f;
 
@@ -99,17 +102,18 @@ HWY_INLINE RayMask meet_rays(const GroupSpace& space, const GroupLimits& limits,
 HWY_INLINE float farthest(const GroupLimits& limits, RayMask mask) {
     const Rays d;
     auto far = hn::Set(d, -std::numeric_limits<float>::infinity());
-    each_vector(mask, [&](std::size_t ray, RayMask)
-                          HWY_ATTR { far = hn::Max(far, hn::Load(d, limits.t_far.data() + ray)); });
+    each_vector(mask, [&](std::size_t ray, RayMask bits) HWY_ATTR {
+        const auto its_far = hn::Load(d, limits.t_far.data() + ray);
+        far = hn::Max(far, hn::IfThenElse(ray_mask(bits), its_far, far));
+    });
     return hn::GetLane(hn::MaxOfLanes(d, far));
 }
 
-// Calls leaf(ref, mask) for leaves that rays of the mask may meet, near ones first, and few(ref,
-// mask) for what is left of the tree below a place where no more than `few_rays` go on together.
+// Calls leaf(ref, mask) for leaves that the rays may meet, near ones first, and few(ref, mask) for
+// what is left of the tree below a place where no more than kFewRays go on together.
 template <typename Leaf, typename Few>
 void walk_group(const WideBvh& bvh, const WideRef& start, const GroupSpace& space,
-                const GroupLimits& limits, RayMask rays, int few_rays, const Leaf& leaf,
-                const Few& few) {
+                const GroupLimits& limits, RayMask rays, const Leaf& leaf, const Few& few) {
     struct Waiting {
         RayMask mask;
         std::uint32_t first;
@@ -128,7 +132,7 @@ void walk_group(const WideBvh& bvh, const WideRef& start, const GroupSpace& spac
             leaf(WideRef{at.first, at.count}, at.mask);
             continue;
         }
-        if (std::popcount(at.mask) <= few_rays) {
+        if (std::popcount(at.mask) <= kFewRays) {
             few(WideRef{at.first, 0}, at.mask);
             continue;
         }

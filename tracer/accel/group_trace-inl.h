@@ -18,9 +18,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
 
-// Fewer rays than these are followed one by one.
-inline constexpr int kFewRays = 3;
-
 // Beyond it float products of three coordinates overflow.
 inline constexpr float kFarthestReach = 1e11f;
 
@@ -43,7 +40,7 @@ public:
         if (state_.top.empty()) return;
         const GroupSpace world(group, mask, 0.0f, largest_coordinate(state_.top.bounds));
         walk_group(
-            state_.top, state_.top.root, world, search_.limits, mask, kFewRays,
+            state_.top, state_.top.root, world, search_.limits, mask,
             [&](const WideRef& leaf, RayMask met) HWY_ATTR {
                 for (std::uint32_t i = 0; i < leaf.count; ++i) {
                     enter(state_.entries[state_.top.indices[leaf.first + i]], world, met);
@@ -56,7 +53,7 @@ private:
     // What is left of the top tree, ray by ray.
     void finish_top(const WideRef& part, RayMask mask) {
         each_ray(mask, [&](std::size_t ray) HWY_ATTR {
-            const SlabRay slabs(rays_[ray].origin, rays_[ray].direction, 0.0f);
+            const SlabRay slabs(rays_[ray].origin, rays_[ray].direction, top_slop(rays_[ray]));
             walk(
                 state_.top, part, slabs, rays_[ray].t_min,
                 [&]() HWY_ATTR { return search_.limits.t_far[ray]; },
@@ -92,7 +89,7 @@ private:
             enter_tree(entry, world, mask);
             return;
         }
-        GroupRays turned;
+        GroupRays turned{};
         each_ray(mask, [&](std::size_t ray) HWY_ATTR {
             const ObjectRay local = object_ray(instance, rays_[ray]);
             for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -102,8 +99,11 @@ private:
             }
         });
         turned.invert();
+        // An instance of another scale may leave nothing of a ray that float can hold.
+        const RayMask ordinary = mask & turned.within(kFarthestReach, 1e-6f, 1e6f);
+        each_on_its_own(entry, mask & ~ordinary);
         // Rays of one octant may lie in several here.
-        for (const RayMask same : turned.octants(mask)) {
+        for (const RayMask same : turned.octants(ordinary)) {
             if (std::popcount(same) <= kFewRays) {
                 each_on_its_own(entry, same);
             } else {
@@ -140,7 +140,7 @@ private:
         const Instance& instance = state_.instances[entry.object];
         const WideBvh& bvh = instance.tree->bvh;
         walk_group(
-            bvh, entry.part, space, search_.limits, mask, kFewRays,
+            bvh, entry.part, space, search_.limits, mask,
             [&](const WideRef& leaf, RayMask met) HWY_ATTR {
                 for (std::uint32_t i = 0; i < leaf.count; ++i) {
                     const std::uint32_t primitive = bvh.indices[leaf.first + i];
@@ -263,21 +263,12 @@ private:
     // Usable, from t_min >= 0 on and not too far away for float; arranged so that a NaN is not.
     [[nodiscard]] RayMask ordinary() const {
         const Rays d;
-        RayMask result = 0;
+        RayMask result = world.within(kFarthestReach, 0.5f, 2.0f);
         for (std::size_t i = 0; i < kGroup; i += kAtOnce) {
-            auto steepest = hn::Zero(d);
-            auto fine = hn::Ge(hn::Load(d, limits.t_min.data() + i), hn::Zero(d));
-            fine = hn::And(fine, hn::Lt(hn::Load(d, limits.t_min.data() + i),
-                                        hn::Load(d, limits.t_far.data() + i)));
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const auto o = hn::Abs(hn::Load(d, world.origin[axis].data() + i));
-                const auto along = hn::Abs(hn::Load(d, world.direction[axis].data() + i));
-                fine = hn::And(fine, hn::Lt(o, hn::Set(d, kFarthestReach)));
-                fine = hn::And(fine, hn::Lt(along, hn::Set(d, 2.0f)));
-                steepest = hn::Max(steepest, along);
-            }
-            fine = hn::And(fine, hn::Gt(steepest, hn::Set(d, 0.5f)));
-            result |= ray_bits(fine) << i;
+            const auto t_min = hn::Load(d, limits.t_min.data() + i);
+            const auto t_far = hn::Load(d, limits.t_far.data() + i);
+            const auto fine = hn::And(hn::Ge(t_min, hn::Zero(d)), hn::Lt(t_min, t_far));
+            result &= ~(kAllAtOnce << i) | ray_bits(fine) << i;
         }
         return result;
     }

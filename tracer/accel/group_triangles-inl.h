@@ -30,7 +30,7 @@ inline float largest_of(const glm::vec3& v) {
 //   t = n . (a - o) / (n . d),  U + V + W = n . d.
 // In float (u = 2^-24), for offsets from o of at most R, edges of at most e and |d| of at most D:
 // a product's component is wrong by at most 8 u R e, an edge function by 3 D 8 u R e + 9 u D 2 R e
-// < 64 u D R e; n by 6 u e^2, n . d by less than 32 u D e^2, and n . (a - o) by less than 32 u R
+// < 64 u D R e; n by 7 u e^2, n . d by less than 48 u D e^2, and n . (a - o) by less than 48 u R
 // e^2.
 struct GroupTriangle {
     glm::vec3 a{0.0f};
@@ -67,8 +67,8 @@ inline GroupTriangle group_triangle(const GroupSpace& space, const glm::vec3& a,
     // With several origins U is taken from the others: three of their errors.
     triangle.edge_error =
         (space.one_origin ? 64.0f : 192.0f) * kUnit * steepest * rounded * edge + kTiny;
-    triangle.slope_error = 32.0f * kUnit * steepest * edge * edge + kTiny;
-    triangle.height_error = 32.0f * kUnit * rounded * edge * edge + kTiny;
+    triangle.slope_error = 48.0f * kUnit * steepest * edge * edge + kTiny;
+    triangle.height_error = 48.0f * kUnit * rounded * edge * edge + kTiny;
     if (space.one_origin) {
         const glm::vec3 from_a = a - low;
         const glm::vec3 from_b = b - low;

@@ -86,6 +86,26 @@ struct GroupRays {
         }
     }
 
+    // Rays whose origin is nearer than `reach` in each coordinate and whose direction's largest
+    // component is between the two; arranged so that a NaN is not.
+    [[nodiscard]] RayMask within(float reach, float least, float most) const {
+        const Rays d;
+        RayMask result = 0;
+        for (std::size_t i = 0; i < kGroup; i += kAtOnce) {
+            auto steepest = hn::Zero(d);
+            auto fine = hn::Eq(steepest, steepest);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const auto o = hn::Abs(hn::Load(d, origin[axis].data() + i));
+                const auto along = hn::Abs(hn::Load(d, direction[axis].data() + i));
+                fine = hn::And(
+                    fine, hn::And(hn::Lt(o, hn::Set(d, reach)), hn::Lt(along, hn::Set(d, most))));
+                steepest = hn::Max(steepest, along);
+            }
+            result |= ray_bits(hn::And(fine, hn::Gt(steepest, hn::Set(d, least)))) << i;
+        }
+        return result;
+    }
+
     // The mask's rays by octant of direction; bit `axis` of the octant: negative there.
     [[nodiscard]] std::array<RayMask, 8> octants(RayMask mask) const {
         std::array<RayMask, 3> negative{};
@@ -137,7 +157,7 @@ struct GroupSpace {
             second[axis] = negative ? axis : 3 + axis;
             const bool flat = inverse_high[axis] >= GroupRays::kSteepest ||
                               inverse_low[axis] <= -GroupRays::kSteepest;
-            slop[axis] = std::max(relative_slop, flat ? 0x1p-20f : 0.0f) * reach;
+            slop[axis] = std::max(relative_slop, flat ? 0x1p-20f : kDoubleSlop) * reach;
         }
     }
 

@@ -111,8 +111,9 @@ private:
     [[nodiscard]] bool each_leaf(const Leaf& leaf) const {
         const WideBvh& bvh = passage.instance.tree->bvh;
         const glm::vec3 origin(passage.local.origin);
-        const SlabRay slabs(origin, glm::vec3(passage.local.direction),
-                            passage.instance.slop * reach_of(passage.local, bvh.bounds));
+        const SlabRay slabs(
+            origin, glm::vec3(passage.local.direction),
+            std::max(passage.instance.slop, kDoubleSlop) * reach_of(passage.local, bvh.bounds));
         return walk(
             bvh, part, slabs, passage.ray.t_min, [this]() HWY_ATTR { return search.limit(); },
             leaf);
@@ -149,11 +150,17 @@ bool trace_primitive(const AccelState& state, std::uint32_t object, std::uint32_
     return ShapeTrace<Search>{passage, {}, search}.primitive(primitive);
 }
 
+// By how much the top tree's boxes are widened for a ray.
+inline float top_slop(const Ray& ray) {
+    return kDoubleSlop *
+           std::max({std::abs(ray.origin.x), std::abs(ray.origin.y), std::abs(ray.origin.z)});
+}
+
 // Down the top tree, or a part of it.
 template <typename Search>
 bool trace_top(const AccelState& state, const WideRef& part, const Ray& ray, const RayQuery& query,
                Search& search) {
-    const SlabRay slabs(ray.origin, ray.direction, 0.0f);
+    const SlabRay slabs(ray.origin, ray.direction, top_slop(ray));
     return walk(
         state.top, part, slabs, ray.t_min, [&]() HWY_ATTR { return search.limit(); },
         [&](const WideRef& leaf) HWY_ATTR {

@@ -14,7 +14,18 @@
 HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
 
-std::optional<Hit> closest_hit(const AccelState& state, const Ray& ray, const RayQuery& query) {
+namespace {
+
+// What lies behind a ray's origin is not on it.
+Ray from_origin(Ray ray) {
+    if (ray.t_min < 0.0f) ray.t_min = 0.0f;
+    return ray;
+}
+
+}  // namespace
+
+std::optional<Hit> closest_hit(const AccelState& state, const Ray& any_ray, const RayQuery& query) {
+    const Ray ray = from_origin(any_ray);
     ClosestSearch closest(ray.t_max);
     trace_ray(state, ray, query, closest);
     if (!closest.winner().valid()) return std::nullopt;
@@ -26,13 +37,13 @@ std::optional<Hit> closest_hit(const AccelState& state, const Ray& ray, const Ra
 
 bool any_hit(const AccelState& state, const Ray& ray, const RayQuery& query) {
     AnySearch any(ray.t_max);
-    trace_ray(state, ray, query, any);
+    trace_ray(state, from_origin(ray), query, any);
     return any.found();
 }
 
 std::vector<Hit> all_hits(const AccelState& state, const Ray& ray, const RayQuery& query) {
     AllSearch all(ray.t_max);
-    trace_ray(state, ray, query, all);
+    trace_ray(state, from_origin(ray), query, all);
     return std::move(all).sorted();
 }
 
@@ -130,18 +141,27 @@ void any_hits(const AccelState& state, std::span<const Ray> rays, std::span<std:
     HWY_DYNAMIC_DISPATCH(any_hits)(state, rays, blocked, query);
 }
 
+namespace {
+
+// Whatever was chosen later.
+const std::vector<std::int64_t>& targets() {
+    static const std::vector<std::int64_t> all = hwy::SupportedAndGeneratedTargets();
+    return all;
+}
+
+}  // namespace
+
 std::vector<std::string> instruction_sets() {
     std::vector<std::string> names;
-    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets())
+    for (const std::int64_t target : targets())
         names.emplace_back(hwy::TargetName(target));
     return names;
 }
 
 void use_instruction_set(std::string_view name) {
-    hwy::SetSupportedTargetsForTest(0);
     std::int64_t wanted = 0;
     std::string known;
-    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    for (const std::int64_t target : targets()) {
         if (name == hwy::TargetName(target)) wanted = target;
         known += std::string(known.empty() ? "" : ", ") + hwy::TargetName(target);
     }

@@ -39,6 +39,10 @@ HWY_INLINE V number_or_smaller(D /*d*/, V number, V instead) {
 #endif
 }
 
+// Of coordinates: more than rounding in double moves what the scalar tests decide. Boxes are
+// widened by it, so that whatever these would find is offered to them.
+inline constexpr float kDoubleSlop = 0x1p-42f;
+
 // The children that a ray may meet.
 struct BoxHits {
     std::uint32_t mask = 0;
