@@ -208,6 +208,35 @@ TEST_P(AccelBatch, SphereSets) {
     }
 }
 
+// Rays that graze spheres, on either side of where float can tell.
+TEST_P(AccelBatch, RimsOfSpheres) {
+    std::vector<glm::vec4> spheres;
+    for (int i = 0; i < 30; ++i)
+        spheres.emplace_back(0.3f * static_cast<float>(i % 6), 0.3f * static_cast<float>(i / 6),
+                             0.1f * static_cast<float>(i % 3),
+                             0.1f + 0.001f * static_cast<float>(i));
+    Scene scene;
+    place(scene, SphereSetInstance{add_sphere_set(scene, make_sphere_set("set", spheres))});
+    const Accel accel = accel_of(scene);
+    const glm::dvec3 eye(0.5, 0.6, 4.0);
+    std::vector<Ray> rays;
+    for (const glm::vec4& sphere : spheres) {
+        const glm::dvec3 centre(sphere.x, sphere.y, sphere.z);
+        const glm::dvec3 along = glm::normalize(centre - eye);
+        const glm::dvec3 u = glm::normalize(glm::cross(along, glm::dvec3(0, 1, 0)));
+        const glm::dvec3 v = glm::cross(along, u);
+        const double sine = static_cast<double>(sphere.w) / glm::distance(centre, eye);
+        for (int i = 0; i < 640; ++i) {
+            const double rim = sine * (1.0 + (i % 64 - 32) * 3e-8);
+            const double turn = 0.01 * i;
+            rays.push_back(
+                ray_towards(glm::vec3(eye), eye + std::sqrt(1.0 - rim * rim) * along +
+                                                rim * (std::cos(turn) * u + std::sin(turn) * v)));
+        }
+    }
+    expect_as_one_by_one(accel, rays);
+}
+
 TEST_P(AccelBatch, AllShapesAndInstances) {
     expect_all_ways(mixed_scene(), 3);
 }
