@@ -27,20 +27,6 @@ namespace {
 
 constexpr std::size_t kStream = 256;
 
-RTCRay packed(const Ray& ray) {
-    RTCRay r{};
-    r.org_x = ray.origin.x;
-    r.org_y = ray.origin.y;
-    r.org_z = ray.origin.z;
-    r.dir_x = ray.direction.x;
-    r.dir_y = ray.direction.y;
-    r.dir_z = ray.direction.z;
-    r.tnear = ray.t_min;
-    r.tfar = ray.t_max;
-    r.mask = 0xffffffffu;
-    return r;
-}
-
 RTCIntersectContext context_of(RTCIntersectContextFlags flags) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -147,7 +133,7 @@ Tally closest_one_by_one(RTCScene scene, std::span<const Ray> rays) {
     Tally sum;
     for (const Ray& ray : rays) {
         RTCRayHit query;
-        query.ray = packed(ray);
+        query.ray = embree_ray(ray);
         query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(scene, &context, &query);
         if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID)
@@ -160,7 +146,7 @@ Tally any_one_by_one(RTCScene scene, std::span<const Ray> rays) {
     auto context = context_of(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
     Tally sum;
     for (const Ray& ray : rays) {
-        RTCRay query = packed(ray);
+        RTCRay query = embree_ray(ray);
         rtcOccluded1(scene, &context, &query);
         sum.hits += query.tfar < 0.0f ? 1 : 0;
     }
@@ -207,7 +193,7 @@ Mode streams(std::shared_ptr<const EmbreeScene> scene, const RayList& list) {
     const auto rays = std::make_shared<std::vector<RTCRay>>();
     rays->reserve(list.rays.size());
     for (const Ray& ray : list.rays)
-        rays->push_back(packed(ray));
+        rays->push_back(embree_ray(ray));
     const auto trace = list.any_hit ? any_stream : closest_stream;
     return {fmt::format("Embree streams of {}", kStream), false,
             [scene, rays, trace](std::size_t, std::size_t begin, std::size_t end) {

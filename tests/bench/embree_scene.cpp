@@ -93,6 +93,20 @@ std::string describe_embree(const EmbreeSettings& settings) {
     return text;
 }
 
+RTCRay embree_ray(const Ray& ray) {
+    RTCRay r{};
+    r.org_x = ray.origin.x;
+    r.org_y = ray.origin.y;
+    r.org_z = ray.origin.z;
+    r.dir_x = ray.direction.x;
+    r.dir_y = ray.direction.y;
+    r.dir_z = ray.direction.z;
+    r.tnear = ray.t_min;
+    r.tfar = ray.t_max;
+    r.mask = 0xffffffffu;
+    return r;
+}
+
 EmbreeScene::EmbreeScene(std::shared_ptr<const Scene> scene, const EmbreeSettings& settings)
     : source_(std::move(scene)),
       settings_(settings),

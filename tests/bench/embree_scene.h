@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tests/bench/modes.h"
+#include "tracer/geometry/ray.h"
 #include "tracer/scene/scene.h"
 
 #include <cstdint>
@@ -28,6 +29,9 @@ struct EmbreeSettings {
 std::string describe_embree(const EmbreeSettings& settings);
 
 #ifdef RAYPICK_HAS_EMBREE
+
+// One of ours as Embree takes it.
+RTCRay embree_ray(const Ray& ray);
 
 // Every object is one geometry, its id the object's index: triangles over shared buffers, sphere
 // points, cone curves. What is used once is flattened to world space, which is Embree's fastest
