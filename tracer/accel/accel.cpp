@@ -4,7 +4,11 @@
 #include "tracer/accel/cut_out.h"
 #include "tracer/accel/trace_rays.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
+#include <queue>
+#include <utility>
 #include <variant>
 
 namespace raypick {
@@ -31,9 +35,61 @@ Instance instance_of(const Scene& scene, const Object& object, const SceneTrees&
     return instance;
 }
 
+// An entry of the top tree, and its box in the world.
+struct PlacedEntry {
+    TopEntry entry;
+    Bounds box;
+};
+
+// Puts an entry's children in its place, those of a node of its object's tree.
+void open_entry(const AccelState& state, std::size_t which, std::vector<PlacedEntry>& entries) {
+    const TopEntry opened = entries[which].entry;
+    const WideNode& node = state.instances[opened.object].tree->bvh.nodes[opened.part.index()];
+    bool first = true;
+    for (std::uint32_t i = 0; i < kWidth; ++i) {
+        if (node.child[i] == WideRef::kNothing) continue;
+        const PlacedEntry child{{opened.object, node.ref(i)}, node.box(i)};
+        if (first) {
+            entries[which] = child;
+        } else {
+            entries.push_back(child);
+        }
+        first = false;
+    }
+}
+
+// Opens objects that lie in each other's way, the largest boxes first, so that the top tree can
+// tell their parts apart (Benthin, Woop, Wald, Afra, "Improved Two-Level BVHs using Partial
+// Re-Braiding", HPG 2017). Objects that stand elsewhere than their shapes remain whole, as each of
+// their parts would have rays to be transformed again.
+void open_entries(const AccelState& state, std::vector<PlacedEntry>& entries) {
+    constexpr std::size_t kMostParts = 64;  // an object, on average
+    if (entries.size() < 2) return;
+    const std::size_t most = entries.size() * kMostParts;
+    using Candidate = std::pair<float, std::size_t>;  // area, which
+    std::priority_queue<Candidate> candidates;
+    const auto consider = [&](std::size_t which) {
+        const TopEntry& entry = entries[which].entry;
+        const Instance& instance = state.instances[entry.object];
+        if (!instance.identity || instance.tree == nullptr || entry.part.is_leaf()) return;
+        candidates.emplace(entries[which].box.half_area(), which);
+    };
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        consider(i);
+    while (!candidates.empty() && entries.size() + kWidth <= most) {
+        const std::size_t which = candidates.top().second;
+        candidates.pop();
+        const std::size_t before = entries.size();
+        open_entry(state, which, entries);
+        consider(which);
+        for (std::size_t i = before; i < entries.size(); ++i)
+            consider(i);
+    }
+}
+
 void place_objects(AccelState& state, const BuildOptions& options) {
     const Scene& scene = *state.scene;
-    std::vector<Bounds> boxes;
+    std::vector<PlacedEntry> entries;
     state.instances.reserve(scene.objects.size());
     for (const Object& object : scene.objects) {
         const auto index = static_cast<std::uint32_t>(state.instances.size());
@@ -42,13 +98,18 @@ void place_objects(AccelState& state, const BuildOptions& options) {
         const Bounds box = instance_bounds(scene, object, tree);
         if (!box.empty()) {
             state.bounds.extend(box);
-            boxes.push_back(box);
-            state.entries.push_back({index, tree != nullptr ? tree->bvh.root : WideRef{}});
+            entries.push_back({{index, tree != nullptr ? tree->bvh.root : WideRef{}}, box});
         } else if (std::holds_alternative<Plane>(object.shape)) {
             state.unbounded.push_back(index);
         }
     }
-    // Each object in a box of its own, as entering it costs more than a look at its box.
+    open_entries(state, entries);
+    std::vector<Bounds> boxes;
+    for (const PlacedEntry& placed : entries) {
+        state.entries.push_back(placed.entry);
+        boxes.push_back(placed.box);
+    }
+    // Each entry in a box of its own, as entering it costs more than a look at its box.
     const BoxSource source = [&boxes](std::size_t first, std::span<Bounds> wanted) {
         std::copy_n(boxes.begin() + static_cast<std::ptrdiff_t>(first), wanted.size(),
                     wanted.begin());
@@ -56,6 +117,10 @@ void place_objects(AccelState& state, const BuildOptions& options) {
     state.top = widen(
         build_bvh(boxes.size(), source,
                   {.costs = {.max_leaf = 1}, .threads = options.threads, .stop = options.stop}));
+    if (!state.bounds.empty()) {
+        const glm::vec3 farthest = glm::max(glm::abs(state.bounds.min), glm::abs(state.bounds.max));
+        state.reach = std::max({farthest.x, farthest.y, farthest.z});
+    }
 }
 
 }  // namespace
@@ -119,7 +184,7 @@ AccelStats Accel::stats() const {
         for (const auto& tree : trees) {
             primitives += tree->count;
             stats.nodes += tree->bvh.nodes.size();
-            stats.bytes += tree->bvh.bytes();
+            stats.bytes += tree->bytes();
         }
     };
     count(state_->trees.meshes, stats.triangles);

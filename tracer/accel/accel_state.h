@@ -36,6 +36,7 @@ struct AccelState {
     WideBvh top;                           // over the entries
     std::vector<std::uint32_t> unbounded;  // infinite planes
     Bounds bounds;                         // of the finite objects
+    float reach = 0.0f;                    // the largest coordinate of these
 };
 
 }  // namespace raypick

@@ -17,13 +17,18 @@ namespace raypick::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // No more rays than these are followed one by one.
-inline constexpr int kFewRays = 3;
+inline constexpr int kFewRays = 4;
 
 inline constexpr float kGrowGroup = 1.0f + 8.0f * 5.9604645e-8f;
 inline constexpr float kShrinkGroup = 1.0f - 8.0f * 5.9604645e-8f;
 
 // The children that some ray of the group may meet before `t_far`, and where it would enter them at
 // the earliest.
+struct BoxHits {
+    std::uint32_t mask = 0;
+    HWY_ALIGN std::array<float, kWidth> enter;  // at the earliest; of those in the mask
+};
+
 HWY_INLINE void meet_group(const GroupSpace& space, const WideNode& node, float t_min, float t_far,
                            BoxHits& hits) {
     const hn::CappedTag<float, kWidth> d;
@@ -116,38 +121,34 @@ void walk_group(const WideBvh& bvh, const WideRef& start, const GroupSpace& spac
                 const GroupLimits& limits, RayMask rays, const Leaf& leaf, const Few& few) {
     struct Waiting {
         RayMask mask;
-        std::uint32_t first;
-        std::uint32_t count;
+        std::uint32_t ref;
         float enter;
     };
     Waiting stack[WideBvh::kMostWaiting];  // NOLINT: not initialised, for it is large
     std::size_t waiting = 0;
-    stack[waiting++] = {rays, start.first, start.count, 0.0f};
+    stack[waiting++] = {rays, start.bits, 0.0f};
     BoxHits hits;
     while (waiting > 0) {
         const Waiting at = stack[--waiting];
         const float far = farthest(limits, at.mask);
         if (!(at.enter <= far)) continue;
-        if (at.count > 0) {
-            leaf(WideRef{at.first, at.count}, at.mask);
+        const WideRef ref{at.ref};
+        if (ref.is_leaf()) {
+            leaf(ref, at.mask);
             continue;
         }
         if (std::popcount(at.mask) <= kFewRays) {
-            few(WideRef{at.first, 0}, at.mask);
+            few(ref, at.mask);
             continue;
         }
-        const WideNode& node = bvh.nodes[at.first];
+        const WideNode& node = bvh.nodes[ref.index()];
         meet_group(space, node, 0.0f, far, hits);
-        const std::size_t nearer = waiting;
-        for (std::uint32_t left = hits.mask; left != 0; left &= left - 1) {
-            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+        std::uint32_t order = node.far_to_near(space.octant);
+        for (std::size_t k = 0; k < kWidth; ++k, order >>= 3) {
+            const std::size_t i = order & 7u;
+            if (((hits.mask >> i) & 1u) == 0) continue;
             const RayMask mask = meet_rays(space, limits, node, i, at.mask);
-            if (mask == 0) continue;
-            const float enter = hits.enter[i];
-            std::size_t place = waiting++;
-            for (; place > nearer && stack[place - 1].enter < enter; --place)
-                stack[place] = stack[place - 1];
-            stack[place] = {mask, node.child[i], node.count[i], enter};
+            if (mask != 0) stack[waiting++] = {mask, node.child[i], hits.enter[i]};
         }
     }
 }

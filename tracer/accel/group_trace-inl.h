@@ -6,6 +6,7 @@
 #define RAYPICK_GROUP_TRACE_INL_H
 #endif
 
+#include "tracer/accel/courses-inl.h"
 #include "tracer/accel/decide_triangles-inl.h"
 #include "tracer/accel/group_boxes-inl.h"
 #include "tracer/accel/group_search-inl.h"
@@ -21,10 +22,6 @@ namespace raypick::HWY_NAMESPACE {
 // Beyond it float products of three coordinates overflow.
 inline constexpr float kFarthestReach = 1e11f;
 
-inline float largest_coordinate(const Bounds& box) {
-    return std::max(largest_of(box.min), largest_of(box.max));
-}
-
 // `Group` is ClosestOfGroup or AnyOfGroup.
 template <typename Group>
 class GroupTrace {
@@ -38,13 +35,14 @@ public:
         for (const std::uint32_t object : state_.unbounded)
             each_on_its_own({object, {}}, mask);
         if (state_.top.empty()) return;
-        const GroupSpace world(group, mask, 0.0f, largest_coordinate(state_.top.bounds));
+        const GroupSpace world(group, mask, 0.0f, state_.reach);
         walk_group(
             state_.top, state_.top.root, world, search_.limits, mask,
             [&](const WideRef& leaf, RayMask met) HWY_ATTR {
-                for (std::uint32_t i = 0; i < leaf.count; ++i) {
-                    enter(state_.entries[state_.top.indices[leaf.first + i]], world, met);
-                }
+                each_index(state_.top, leaf, [&](std::uint32_t entry) HWY_ATTR {
+                    enter(state_.entries[entry], world, met);
+                    return false;
+                });
             },
             [&](const WideRef& part, RayMask met) HWY_ATTR { finish_top(part, met); });
     }
@@ -53,16 +51,16 @@ private:
     // What is left of the top tree, ray by ray.
     void finish_top(const WideRef& part, RayMask mask) {
         each_ray(mask, [&](std::size_t ray) HWY_ATTR {
-            const SlabRay slabs(rays_[ray].origin, rays_[ray].direction, top_slop(rays_[ray]));
+            RayInSpace world(rays_[ray], state_.reach);
             walk(
-                state_.top, part, slabs, rays_[ray].t_min,
+                state_.top, part, world.slabs(), rays_[ray].t_min,
                 [&]() HWY_ATTR { return search_.limits.t_far[ray]; },
                 [&](const WideRef& leaf) HWY_ATTR {
-                    for (std::uint32_t i = 0; i < leaf.count; ++i) {
-                        const TopEntry& entry = state_.entries[state_.top.indices[leaf.first + i]];
-                        each_on_its_own(entry, RayMask{1} << ray);
-                    }
-                    return false;
+                    return each_index(state_.top, leaf, [&](std::uint32_t number) HWY_ATTR {
+                        const TopEntry& entry = state_.entries[number];
+                        auto one = one_of(search_, ray, entry.object);
+                        return trace_entry(state_, entry, rays_[ray], world, query_, one);
+                    });
                 });
         });
     }
@@ -70,8 +68,24 @@ private:
     void each_on_its_own(const TopEntry& entry, RayMask mask) {
         each_ray(mask, [&](std::size_t ray) HWY_ATTR {
             auto one = one_of(search_, ray, entry.object);
-            trace_entry(state_, entry, rays_[ray], query_, one);
+            RayInSpace world(rays_[ray], state_.reach);
+            trace_entry(state_, entry, rays_[ray], world, query_, one);
         });
+    }
+
+    // The same for a few rays in a mesh or a part of it.
+    void few_in_mesh(const TopEntry& entry, RayMask mask) {
+        using One = decltype(one_of(search_, 0, 0));
+        run_courses<One, kFewRays>(
+            [&](Course<One>& course, std::size_t&) HWY_ATTR {
+                if (mask == 0) return false;
+                const auto ray = static_cast<std::size_t>(std::countr_zero(mask));
+                mask &= mask - 1;
+                course.start_in(state_, entry, rays_[ray], query_,
+                                one_of(search_, ray, entry.object));
+                return true;
+            },
+            [](const Course<One>&, std::size_t) {});
     }
 
     void enter(const TopEntry& entry, const GroupSpace& world, RayMask mask) {
@@ -80,7 +94,7 @@ private:
         const Instance& instance = state_.instances[entry.object];
         const bool in_groups = std::holds_alternative<MeshInstance>(object.shape) ||
                                std::holds_alternative<SphereSetInstance>(object.shape);
-        const float reach = in_groups ? largest_coordinate(instance.tree->bvh.bounds) : 0.0f;
+        const float reach = in_groups ? instance.tree->reach : 0.0f;
         if (!in_groups || !(reach < kFarthestReach)) {
             each_on_its_own(entry, mask);
             return;
@@ -117,44 +131,61 @@ private:
         const ShownSides shown{shows(object.sides, true) && shows(query_.sides, true),
                                shows(object.sides, false) && shows(query_.sides, false)};
         if (!shown.front && !shown.back) return;
-        if (const auto* instance = std::get_if<MeshInstance>(&object.shape)) {
-            const Mesh& mesh = state_.scene->meshes[instance->mesh];
-            search_tree(entry, space, shown, mask, [&](std::uint32_t primitive) HWY_ATTR {
-                const glm::uvec3 corner = mesh.triangles[primitive];
-                return group_triangle(space, mesh.positions[corner.x], mesh.positions[corner.y],
-                                      mesh.positions[corner.z]);
+        const Instance& instance = state_.instances[entry.object];
+        const PrimitiveTree& tree = *instance.tree;
+        if (std::holds_alternative<MeshInstance>(object.shape)) {
+            search_tree(entry, space, mask, [&](const WideRef& leaf, RayMask met) HWY_ATTR {
+                each_patch(tree.patches, leaf, [&](const TrianglePatch& patch) HWY_ATTR {
+                    GroupTriangles triangles;  // NOLINT: not initialised, as it is large
+                    std::uint32_t left = 0;
+                    for (std::size_t i = 0; i < patch.triangles; i += kTrianglesAtOnce)
+                        left |= set_triangles(space, patch, i, triangles) << i;
+                    left &= (1u << patch.triangles) - 1u;
+                    for (; left != 0; left &= left - 1) {
+                        const auto i = static_cast<std::size_t>(std::countr_zero(left));
+                        judge_all(entry, space, shown, GroupTriangle{triangles, i},
+                                  patch.primitives()[i], met);
+                    }
+                    return false;
+                });
             });
         } else {
             const SetId set = std::get<SphereSetInstance>(object.shape).set;
             const std::span<const glm::vec4> spheres = state_.scene->sphere_sets[set].spheres;
-            search_tree(entry, space, shown, mask, [&](std::uint32_t primitive) HWY_ATTR {
-                return group_sphere(space, spheres[primitive]);
+            search_tree(entry, space, mask, [&](const WideRef& leaf, RayMask met) HWY_ATTR {
+                each_index(tree.bvh, leaf, [&](std::uint32_t primitive) HWY_ATTR {
+                    judge_all(entry, space, shown, group_sphere(space, spheres[primitive]),
+                              primitive, met);
+                    return false;
+                });
             });
         }
     }
 
-    // `prepared(primitive)` gives what judge() takes.
-    template <typename Prepared>
-    HWY_INLINE void search_tree(const TopEntry& entry, const GroupSpace& space,
-                                const ShownSides& shown, RayMask mask, const Prepared& prepared) {
-        const Instance& instance = state_.instances[entry.object];
-        const WideBvh& bvh = instance.tree->bvh;
-        walk_group(
-            bvh, entry.part, space, search_.limits, mask,
-            [&](const WideRef& leaf, RayMask met) HWY_ATTR {
-                for (std::uint32_t i = 0; i < leaf.count; ++i) {
-                    const std::uint32_t primitive = bvh.indices[leaf.first + i];
-                    const auto shape = prepared(primitive);
-                    each_vector(met, [&](std::size_t ray, RayMask bits) HWY_ATTR {
-                        const Verdict verdict = judge(space, search_.limits, shape, shown, ray);
-                        if ((verdict.may & bits) == 0) return;
-                        settle(verdict, ray, bits, entry.object, primitive, instance.holes);
-                    });
-                }
-            },
-            [&](const WideRef& part, RayMask met) HWY_ATTR {
-                each_on_its_own({entry.object, part}, met);
-            });
+    template <typename Leaf>
+    HWY_INLINE void search_tree(const TopEntry& entry, const GroupSpace& space, RayMask mask,
+                                const Leaf& leaf) {
+        walk_group(state_.instances[entry.object].tree->bvh, entry.part, space, search_.limits,
+                   mask, leaf, [&](const WideRef& part, RayMask met) HWY_ATTR {
+                       if (std::holds_alternative<MeshInstance>(
+                               state_.scene->objects[entry.object].shape)) {
+                           few_in_mesh({entry.object, part}, met);
+                       } else {
+                           each_on_its_own({entry.object, part}, met);
+                       }
+                   });
+    }
+
+    template <typename Shape>
+    HWY_INLINE void judge_all(const TopEntry& entry, const GroupSpace& space,
+                              const ShownSides& shown, const Shape& shape, std::uint32_t primitive,
+                              RayMask mask) {
+        const bool holes = state_.instances[entry.object].holes;
+        each_vector(mask, [&](std::size_t ray, RayMask bits) HWY_ATTR {
+            const Verdict verdict = judge(space, search_.limits, shape, shown, ray);
+            if ((verdict.may & bits) == 0) return;
+            settle(verdict, ray, bits, entry.object, primitive, holes);
+        });
     }
 
     void settle(const Verdict& verdict, std::size_t ray, RayMask bits, std::uint32_t object,
@@ -217,6 +248,9 @@ private:
     Group& search_;
 };
 
+// Fewer go one by one.
+inline constexpr int kFewestInGroup = 12;
+
 // Rays as they come, and which of them can go in groups.
 struct Chunk {
     GroupRays world;
@@ -225,9 +259,8 @@ struct Chunk {
     RayMask alone = 0;
 
     Chunk(const AccelState& state, std::span<const Ray> rays, const RayQuery& query) {
-        const bool plain =
-            !query.accept && query.clip_planes.empty() &&
-            (state.top.empty() || largest_coordinate(state.top.bounds) < kFarthestReach);
+        const bool plain = !query.accept && query.clip_planes.empty() &&
+                           (state.top.empty() || state.reach < kFarthestReach);
         if (!plain) {
             for (std::size_t i = 0; i < rays.size(); ++i)
                 alone |= RayMask{usable(rays[i]) ? 1u : 0u} << i;
@@ -242,7 +275,7 @@ struct Chunk {
         world.invert();
         octants = world.octants(groupable);
         for (RayMask& group : octants) {
-            if (std::popcount(group) > kFewRays) continue;
+            if (std::popcount(group) >= kFewestInGroup) continue;
             alone |= group;
             group = 0;
         }

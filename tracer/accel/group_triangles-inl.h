@@ -9,6 +9,7 @@
 
 #include "tracer/accel/group_search-inl.h"
 #include "tracer/accel/ray_group-inl.h"
+#include "tracer/accel/single_ray-inl.h"
 #include "tracer/scene/scene.h"
 
 #include <glm/common.hpp>
@@ -18,13 +19,8 @@ HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-inline float largest_of(const glm::vec3& v) {
-    const glm::vec3 a = glm::abs(v);
-    return std::max({a.x, a.y, a.z});
-}
-
-// What is the same for all rays of a group. With a, b, c the corners, o a ray's origin and d its
-// direction, the ray's edge functions are
+// What is the same for all rays of a group, of a patch's triangles. With a, b, c the corners, o a
+// ray's origin and d its direction, the ray's edge functions are
 //   U = d . ((b - o) x (c - b)),  V = d . ((c - o) x (a - c)),  W = d . ((a - o) x (b - a)),
 // of one sign within the triangle, and with n = (b - a) x (c - a)
 //   t = n . (a - o) / (n . d),  U + V + W = n . d.
@@ -32,54 +28,132 @@ inline float largest_of(const glm::vec3& v) {
 // a product's component is wrong by at most 8 u R e, an edge function by 3 D 8 u R e + 9 u D 2 R e
 // < 64 u D R e; n by 7 u e^2, n . d by less than 48 u D e^2, and n . (a - o) by less than 48 u R
 // e^2.
-struct GroupTriangle {
-    glm::vec3 a{0.0f};
-    glm::vec3 edge_b{0.0f};  // b - a
-    glm::vec3 edge_c{0.0f};  // c - a
-    glm::vec3 n{0.0f};
-    float edge_error = 0.0f;
-    float slope_error = 0.0f;   // of n . d
-    float height_error = 0.0f;  // of n . (a - o)
+struct GroupTriangles {
+    using Numbers = std::array<float, TrianglePatch::kMostTriangles>;
+    using Vectors = std::array<Numbers, 3>;  // by axis
+
+    HWY_ALIGN Vectors a;
+    HWY_ALIGN Vectors edge_b;  // b - a
+    HWY_ALIGN Vectors edge_c;  // c - a
+    HWY_ALIGN Vectors n;
+    HWY_ALIGN Numbers edge_error;
+    HWY_ALIGN Numbers slope_error;   // of n . d
+    HWY_ALIGN Numbers height_error;  // of n . (a - o)
     // Of one origin only.
-    glm::vec3 u{0.0f};
-    glm::vec3 v{0.0f};
-    glm::vec3 w{0.0f};
-    float height = 0.0f;  // n . (a - o)
+    HWY_ALIGN Vectors u;
+    HWY_ALIGN Vectors v;
+    HWY_ALIGN Vectors w;
+    HWY_ALIGN Numbers height;  // n . (a - o)
 };
 
-inline GroupTriangle group_triangle(const GroupSpace& space, const glm::vec3& a, const glm::vec3& b,
-                                    const glm::vec3& c) {
+struct TriangleVectors {
+    TriangleFloats x, y, z;
+
+    HWY_INLINE TriangleVectors operator-(const TriangleVectors& other) const {
+        return {hn::Sub(x, other.x), hn::Sub(y, other.y), hn::Sub(z, other.z)};
+    }
+};
+
+HWY_INLINE TriangleVectors cross(const TriangleVectors& p, const TriangleVectors& q) {
+    return {hn::NegMulAdd(p.z, q.y, hn::Mul(p.y, q.z)), hn::NegMulAdd(p.x, q.z, hn::Mul(p.z, q.x)),
+            hn::NegMulAdd(p.y, q.x, hn::Mul(p.x, q.y))};
+}
+
+HWY_INLINE TriangleFloats largest_of(const TriangleVectors& v) {
+    return hn::Max(hn::Max(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z));
+}
+
+HWY_INLINE void store(const TriangleVectors& from, std::size_t first, GroupTriangles::Vectors& to) {
+    const Triangles d;
+    hn::Store(from.x, d, to[0].data() + first);
+    hn::Store(from.y, d, to[1].data() + first);
+    hn::Store(from.z, d, to[2].data() + first);
+}
+
+// Of an edge function of direction the bounds that hold for all rays.
+struct EdgeBounds {
+    TriangleFloats low, high;
+};
+
+HWY_INLINE EdgeBounds edge_bounds(const GroupSpace& space, const TriangleVectors& normal) {
+    const Triangles d;
+    const auto along = [&](const TriangleFloats& n, std::size_t axis, EdgeBounds& sum) HWY_ATTR {
+        const auto at_low = hn::Mul(n, hn::Set(d, space.direction_low[axis]));
+        const auto at_high = hn::Mul(n, hn::Set(d, space.direction_high[axis]));
+        sum.low = hn::Add(sum.low, hn::Min(at_low, at_high));
+        sum.high = hn::Add(sum.high, hn::Max(at_low, at_high));
+    };
+    EdgeBounds bounds{hn::Zero(d), hn::Zero(d)};
+    along(normal.x, 0, bounds);
+    along(normal.y, 1, bounds);
+    along(normal.z, 2, bounds);
+    return bounds;
+}
+
+// Sets the triangles of the patch from `first` on, as many as one instruction takes, and returns
+// those that some ray of the group may meet, as a mask.
+HWY_INLINE std::uint32_t set_triangles(const GroupSpace& space, const TrianglePatch& patch,
+                                       std::size_t first, GroupTriangles& triangles) {
     constexpr float kUnit = 0x1p-24f;
     constexpr float kTiny = 16.0f * std::numeric_limits<float>::min();
-    GroupTriangle triangle;
-    triangle.a = a;
-    triangle.edge_b = b - a;
-    triangle.edge_c = c - a;
-    const glm::vec3 edge_bc = c - b;
-    triangle.n = glm::cross(triangle.edge_b, triangle.edge_c);
-    const glm::vec3 low(space.origin_low[0], space.origin_low[1], space.origin_low[2]);
-    const glm::vec3 high(space.origin_high[0], space.origin_high[1], space.origin_high[2]);
-    const float edge = largest_of(glm::max(
-        glm::max(glm::abs(triangle.edge_b), glm::abs(triangle.edge_c)), glm::abs(edge_bc)));
-    const float reach = std::max(largest_of(a - low), largest_of(a - high)) + edge;
-    const float rounded = reach + space.origin_rounding;
-    const float steepest = space.steepest_direction;
-    // With several origins U is taken from the others: three of their errors.
-    triangle.edge_error =
-        (space.one_origin ? 64.0f : 192.0f) * kUnit * steepest * rounded * edge + kTiny;
-    triangle.slope_error = 48.0f * kUnit * steepest * edge * edge + kTiny;
-    triangle.height_error = 48.0f * kUnit * rounded * edge * edge + kTiny;
-    if (space.one_origin) {
-        const glm::vec3 from_a = a - low;
-        const glm::vec3 from_b = b - low;
-        const glm::vec3 from_c = c - low;
-        triangle.u = glm::cross(from_b, edge_bc);
-        triangle.v = -glm::cross(from_c, triangle.edge_c);
-        triangle.w = glm::cross(from_a, triangle.edge_b);
-        triangle.height = glm::dot(triangle.n, from_a);
+    const Triangles d;
+    TriangleVectors corner[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+        const CornerPick pick(patch, k, first);
+        corner[k] = {pick.of(patch.along(0)), pick.of(patch.along(1)), pick.of(patch.along(2))};
     }
-    return triangle;
+    const auto& [a, b, c] = corner;
+    const TriangleVectors edge_b = b - a;
+    const TriangleVectors edge_c = c - a;
+    const TriangleVectors edge_bc = c - b;
+    const TriangleVectors n = cross(edge_b, edge_c);
+    const TriangleVectors low{hn::Set(d, space.origin_low[0]), hn::Set(d, space.origin_low[1]),
+                              hn::Set(d, space.origin_low[2])};
+    const TriangleVectors high{hn::Set(d, space.origin_high[0]), hn::Set(d, space.origin_high[1]),
+                               hn::Set(d, space.origin_high[2])};
+    const auto edge = hn::Max(hn::Max(largest_of(edge_b), largest_of(edge_c)), largest_of(edge_bc));
+    const auto reach = hn::Add(hn::Max(largest_of(a - low), largest_of(a - high)), edge);
+    const auto rounded = hn::Mul(edge, hn::Add(reach, hn::Set(d, space.origin_rounding)));
+    const auto tiny = hn::Set(d, kTiny);
+    // With several origins U is taken from the others: three of their errors.
+    const float of_edge = (space.one_origin ? 64.0f : 192.0f) * kUnit * space.steepest_direction;
+    const auto edge_error = hn::MulAdd(rounded, hn::Set(d, of_edge), tiny);
+    store(a, first, triangles.a);
+    store(edge_b, first, triangles.edge_b);
+    store(edge_c, first, triangles.edge_c);
+    store(n, first, triangles.n);
+    hn::Store(edge_error, d, triangles.edge_error.data() + first);
+    hn::Store(
+        hn::MulAdd(hn::Mul(edge, edge), hn::Set(d, 48.0f * kUnit * space.steepest_direction), tiny),
+        d, triangles.slope_error.data() + first);
+    hn::Store(hn::MulAdd(hn::Mul(rounded, edge), hn::Set(d, 48.0f * kUnit), tiny), d,
+              triangles.height_error.data() + first);
+    if (!space.one_origin) return (1u << kTrianglesAtOnce) - 1u;
+    const TriangleVectors from_a = a - low;
+    const TriangleVectors u = cross(b - low, edge_bc);
+    const TriangleVectors v = cross(edge_c, c - low);
+    const TriangleVectors w = cross(from_a, edge_b);
+    store(u, first, triangles.u);
+    store(v, first, triangles.v);
+    store(w, first, triangles.w);
+    hn::Store(hn::MulAdd(n.x, from_a.x, hn::MulAdd(n.y, from_a.y, hn::Mul(n.z, from_a.z))), d,
+              triangles.height.data() + first);
+    // Missed by all, if one edge function is surely below 0 for all, and another surely above.
+    const EdgeBounds of_u = edge_bounds(space, u);
+    const EdgeBounds of_v = edge_bounds(space, v);
+    const EdgeBounds of_w = edge_bounds(space, w);
+    const auto least = hn::Min(hn::Min(of_u.high, of_v.high), of_w.high);
+    const auto most = hn::Max(hn::Max(of_u.low, of_v.low), of_w.low);
+    const auto error = hn::Add(edge_error, edge_error);
+    const auto missed = hn::And(hn::Lt(least, hn::Neg(error)), hn::Gt(most, error));
+    return ~triangle_bits(missed) & ((1u << kTrianglesAtOnce) - 1u);
 }
+
+// One of a patch's triangles.
+struct GroupTriangle {
+    const GroupTriangles& all;
+    std::size_t i;
+};
 
 struct EdgeFunctions {
     RayFloats u, v, w;
@@ -87,41 +161,41 @@ struct EdgeFunctions {
     RayFloats height;  // n . (a - o)
 };
 
-HWY_INLINE RayFloats dot(const glm::vec3& constant, const RayFloats& x, const RayFloats& y,
-                         const RayFloats& z) {
+HWY_INLINE RayFloats dot(const GroupTriangles::Vectors& constant, std::size_t i, const RayFloats& x,
+                         const RayFloats& y, const RayFloats& z) {
     const Rays d;
-    return hn::MulAdd(hn::Set(d, constant.x), x,
-                      hn::MulAdd(hn::Set(d, constant.y), y, hn::Mul(hn::Set(d, constant.z), z)));
+    return hn::MulAdd(
+        hn::Set(d, constant[0][i]), x,
+        hn::MulAdd(hn::Set(d, constant[1][i]), y, hn::Mul(hn::Set(d, constant[2][i]), z)));
 }
 
 HWY_INLINE EdgeFunctions edge_functions(const GroupSpace& space, const GroupTriangle& triangle,
                                         std::size_t ray) {
     const Rays d;
+    const GroupTriangles& all = triangle.all;
+    const std::size_t i = triangle.i;
     const auto dx = hn::Load(d, space.rays.direction[0].data() + ray);
     const auto dy = hn::Load(d, space.rays.direction[1].data() + ray);
     const auto dz = hn::Load(d, space.rays.direction[2].data() + ray);
     EdgeFunctions f;
-    f.slope = dot(triangle.n, dx, dy, dz);
+    f.slope = dot(all.n, i, dx, dy, dz);
     if (space.one_origin) {
-        f.u = dot(triangle.u, dx, dy, dz);
-        f.v = dot(triangle.v, dx, dy, dz);
-        f.w = dot(triangle.w, dx, dy, dz);
-        f.height = hn::Set(d, triangle.height);
+        f.u = dot(all.u, i, dx, dy, dz);
+        f.v = dot(all.v, i, dx, dy, dz);
+        f.w = dot(all.w, i, dx, dy, dz);
+        f.height = hn::Set(d, all.height[i]);
         return f;
     }
-    const auto x =
-        hn::Sub(hn::Set(d, triangle.a.x), hn::Load(d, space.rays.origin[0].data() + ray));
-    const auto y =
-        hn::Sub(hn::Set(d, triangle.a.y), hn::Load(d, space.rays.origin[1].data() + ray));
-    const auto z =
-        hn::Sub(hn::Set(d, triangle.a.z), hn::Load(d, space.rays.origin[2].data() + ray));
+    const auto x = hn::Sub(hn::Set(d, all.a[0][i]), hn::Load(d, space.rays.origin[0].data() + ray));
+    const auto y = hn::Sub(hn::Set(d, all.a[1][i]), hn::Load(d, space.rays.origin[1].data() + ray));
+    const auto z = hn::Sub(hn::Set(d, all.a[2][i]), hn::Load(d, space.rays.origin[2].data() + ray));
     const auto rx = hn::NegMulAdd(dz, y, hn::Mul(dy, z));
     const auto ry = hn::NegMulAdd(dx, z, hn::Mul(dz, x));
     const auto rz = hn::NegMulAdd(dy, x, hn::Mul(dx, y));
-    f.v = hn::Neg(dot(triangle.edge_c, rx, ry, rz));
-    f.w = dot(triangle.edge_b, rx, ry, rz);
+    f.v = hn::Neg(dot(all.edge_c, i, rx, ry, rz));
+    f.w = dot(all.edge_b, i, rx, ry, rz);
     f.u = hn::Sub(f.slope, hn::Add(f.v, f.w));
-    f.height = dot(triangle.n, x, y, z);
+    f.height = dot(all.n, i, x, y, z);
     return f;
 }
 
@@ -144,7 +218,7 @@ HWY_INLINE Verdict judge(const GroupSpace& space, const GroupLimits& limits,
     const EdgeFunctions f = edge_functions(space, triangle, ray);
     const auto least = hn::Min(hn::Min(f.u, f.v), f.w);
     const auto most = hn::Max(hn::Max(f.u, f.v), f.w);
-    const auto error = hn::Set(d, triangle.edge_error);
+    const auto error = hn::Set(d, triangle.all.edge_error[triangle.i]);
     const auto no = hn::Gt(least, hn::Set(d, std::numeric_limits<float>::infinity()));
     // Arranged so that a NaN rules nothing out. A ray that meets the front goes against n.
     auto missed = hn::Or(no, hn::And(hn::Lt(least, hn::Neg(error)), hn::Gt(most, error)));
@@ -156,8 +230,8 @@ HWY_INLINE Verdict judge(const GroupSpace& space, const GroupLimits& limits,
     if (verdict.may == 0) return verdict;
     const auto slope = hn::Abs(f.slope);
     const auto height = hn::Xor(f.height, hn::And(f.slope, hn::SignBit(d)));
-    const auto slope_error = hn::Set(d, triangle.slope_error);
-    const auto height_error = hn::Set(d, triangle.height_error);
+    const auto slope_error = hn::Set(d, triangle.all.slope_error[triangle.i]);
+    const auto height_error = hn::Set(d, triangle.all.height_error[triangle.i]);
     const auto t_min = hn::Load(d, limits.t_min.data() + ray);
     const auto t_far = hn::Load(d, limits.t_far.data() + ray);
     const auto grow = hn::Set(d, kGrowGroup);

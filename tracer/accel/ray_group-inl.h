@@ -130,11 +130,13 @@ struct GroupRays {
 struct GroupSpace {
     const GroupRays& rays;
     std::array<float, 3> origin_low{}, origin_high{};
+    std::array<float, 3> direction_low{}, direction_high{};
     std::array<float, 3> inverse_low{}, inverse_high{};
     std::array<std::size_t, 3> first{}, second{};  // the plane of a box that they meet first
-    std::array<float, 3> slop{};                   // boxes are widened by it
-    float steepest_direction = 0.0f;               // the largest component
-    float origin_rounding = 0.0f;  // the largest coordinate that origins were rounded from, or 0
+    std::size_t octant = 0;
+    std::array<float, 3> slop{};      // boxes are widened by it
+    float steepest_direction = 0.0f;  // the largest component
+    float origin_rounding = 0.0f;     // the largest coordinate that origins were rounded from, or 0
     bool one_origin = false;
 
     // `relative_slop` is the instance's; `reach` the largest coordinate of what is to be met.
@@ -143,8 +145,8 @@ struct GroupSpace {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             measure(rays.origin[axis], mask, origin_low[axis], origin_high[axis]);
             measure(rays.inverse[axis], mask, inverse_low[axis], inverse_high[axis]);
-            float low = 0.0f;
-            float high = 0.0f;
+            float& low = direction_low[axis];
+            float& high = direction_high[axis];
             measure(rays.direction[axis], mask, low, high);
             steepest_direction = std::max({steepest_direction, std::abs(low), std::abs(high)});
             reach = std::max({reach, std::abs(origin_low[axis]), std::abs(origin_high[axis])});
@@ -155,6 +157,7 @@ struct GroupSpace {
             const bool negative = inverse_high[axis] < 0.0f;
             first[axis] = negative ? 3 + axis : axis;
             second[axis] = negative ? axis : 3 + axis;
+            octant |= std::size_t{negative ? 1u : 0u} << axis;
             const bool flat = inverse_high[axis] >= GroupRays::kSteepest ||
                               inverse_low[axis] <= -GroupRays::kSteepest;
             slop[axis] = std::max(relative_slop, flat ? 0x1p-20f : kDoubleSlop) * reach;

@@ -21,17 +21,51 @@
 HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
 
-// The largest coordinate of a ray's origin and of a tree.
-inline float reach_of(const ObjectRay& ray, const Bounds& box) {
-    const glm::vec3 reach =
-        glm::max(glm::abs(glm::vec3(ray.origin)), glm::max(glm::abs(box.min), glm::abs(box.max)));
-    return std::max({reach.x, reach.y, reach.z});
+inline float largest_of(const glm::vec3& v) {
+    const glm::vec3 a = glm::abs(v);
+    return std::max(std::max(a.x, a.y), a.z);
 }
+
+// A ray in the space of a tree. `reach` is the largest coordinate of the origin and of whatever is
+// searched.
+class RayInSpace {
+public:
+    // As it came, for objects that stand where their shapes do.
+    RayInSpace(const Ray& ray, float reach)
+        : origin_reach_(largest_of(ray.origin)),
+          slabs_(ray.origin, ray.direction, kDoubleSlop * std::max(origin_reach_, reach)),
+          filter_(ray.origin, ray.direction) {}
+
+    RayInSpace(const ObjectRay& ray, const Instance& instance)
+        : origin_reach_(largest_of(glm::vec3(ray.origin))),
+          slabs_(glm::vec3(ray.origin), glm::vec3(ray.direction),
+                 instance.slop * std::max(origin_reach_, instance.tree->reach)),
+          sheared_(shear(ray)),
+          filter_(*sheared_) {}
+
+    [[nodiscard]] const SlabRay& slabs() const { return slabs_; }
+    [[nodiscard]] const TriangleFilter& filter() const { return filter_; }
+    [[nodiscard]] float reach(const PrimitiveTree& tree) const {
+        return std::max(origin_reach_, tree.reach);
+    }
+    // `ray` is the same.
+    const ShearedRay& sheared(const ObjectRay& ray) {
+        if (!sheared_) sheared_ = shear(ray);
+        return *sheared_;
+    }
+
+private:
+    float origin_reach_;
+    SlabRay slabs_;
+    std::optional<ShearedRay> sheared_;  // as soon as it is needed
+    TriangleFilter filter_;
+};
 
 // A shape as rays meet it: itself, or a tree over primitives, of which `part` is to be searched.
 template <typename Search>
 struct ShapeTrace {
     const Passage& passage;
+    RayInSpace* space;  // of trees
     WideRef part;
     Search& search;
 
@@ -55,19 +89,21 @@ struct ShapeTrace {
         });
     }
 
-    bool operator()(const MeshInstance& instance) const {
-        const Mesh& mesh = passage.scene.meshes[instance.mesh];
-        const WideBvh& bvh = passage.instance.tree->bvh;
-        const ShearedRay sheared = shear(passage.local);
-        const TriangleFilter filter(sheared, reach_of(passage.local, bvh.bounds));
-        return each_leaf([&](const WideRef& leaf) HWY_ATTR {
-            const auto at_once = static_cast<std::uint32_t>(hn::Lanes(Four()));
-            for (std::uint32_t i = 0; i < leaf.count; i += at_once) {
-                const std::uint32_t* primitives = bvh.indices.data() + leaf.first + i;
-                std::uint32_t left = filter.may_hit(
-                    mesh, primitives, std::min(at_once, leaf.count - i), search.limit());
-                for (; left != 0; left &= left - 1) {
-                    if (triangle(mesh, sheared, primitives[std::countr_zero(left)])) return true;
+    bool operator()(const MeshInstance&) const {
+        return each_leaf([&](const WideRef& leaf) HWY_ATTR { return triangles_of(leaf); });
+    }
+
+    // Of a leaf of a mesh.
+    [[nodiscard]] bool triangles_of(const WideRef& leaf) const {
+        const PrimitiveTree& tree = *passage.instance.tree;
+        const float reach = space->reach(tree);
+        return each_patch(tree.patches, leaf, [&](const TrianglePatch& patch) HWY_ATTR {
+            std::uint32_t left = space->filter().may_hit(patch, reach, search.limit());
+            for (; left != 0; left &= left - 1) {
+                const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+                if (triangle(space->sheared(passage.local), patch.position(i, 0),
+                             patch.position(i, 1), patch.position(i, 2), patch.primitives()[i])) {
+                    return true;
                 }
             }
             return false;
@@ -79,7 +115,10 @@ struct ShapeTrace {
         const Scene& scene = passage.scene;
         const Shape& shape = passage.object.shape;
         if (const auto* mesh = std::get_if<MeshInstance>(&shape)) {
-            return triangle(scene.meshes[mesh->mesh], shear(passage.local), number);
+            const Mesh& of = scene.meshes[mesh->mesh];
+            const glm::uvec3 corner = of.triangles[number];
+            return triangle(shear(passage.local), of.positions[corner.x], of.positions[corner.y],
+                            of.positions[corner.z], number);
         }
         if (const auto* spheres = std::get_if<SphereSetInstance>(&shape)) {
             const Sphere sphere = sphere_of(scene.sphere_sets[spheres->set], number);
@@ -93,12 +132,9 @@ struct ShapeTrace {
     }
 
 private:
-    [[nodiscard]] bool triangle(const Mesh& mesh, const ShearedRay& ray,
-                                std::uint32_t primitive) const {
-        const glm::uvec3 corner = mesh.triangles[primitive];
-        const auto found = intersect_triangle(ray, glm::dvec3(mesh.positions[corner.x]),
-                                              glm::dvec3(mesh.positions[corner.y]),
-                                              glm::dvec3(mesh.positions[corner.z]));
+    [[nodiscard]] bool triangle(const ShearedRay& ray, const glm::vec3& a, const glm::vec3& b,
+                                const glm::vec3& c, std::uint32_t primitive) const {
+        const auto found = intersect_triangle(ray, glm::dvec3(a), glm::dvec3(b), glm::dvec3(c));
         if (!found) return false;
         const auto t = static_cast<float>(found->t);
         if (!passage.in_range(t, search.limit())) return false;
@@ -109,36 +145,32 @@ private:
 
     template <typename Leaf>
     [[nodiscard]] bool each_leaf(const Leaf& leaf) const {
-        const WideBvh& bvh = passage.instance.tree->bvh;
-        const glm::vec3 origin(passage.local.origin);
-        const SlabRay slabs(
-            origin, glm::vec3(passage.local.direction),
-            std::max(passage.instance.slop, kDoubleSlop) * reach_of(passage.local, bvh.bounds));
         return walk(
-            bvh, part, slabs, passage.ray.t_min, [this]() HWY_ATTR { return search.limit(); },
-            leaf);
+            passage.instance.tree->bvh, part, space->slabs(), passage.ray.t_min,
+            [this]() HWY_ATTR { return search.limit(); }, leaf);
     }
 
     template <typename Primitive>
     [[nodiscard]] bool each_primitive(const Primitive& primitive) const {
-        const std::vector<std::uint32_t>& indices = passage.instance.tree->bvh.indices;
         return each_leaf([&](const WideRef& leaf) HWY_ATTR {
-            for (std::uint32_t i = 0; i < leaf.count; ++i) {
-                if (primitive(indices[leaf.first + i])) return true;
-            }
-            return false;
+            return each_index(passage.instance.tree->bvh, leaf, primitive);
         });
     }
 };
 
+// `world` is the ray.
 template <typename Search>
-bool trace_entry(const AccelState& state, const TopEntry& entry, const Ray& ray,
+bool trace_entry(const AccelState& state, const TopEntry& entry, const Ray& ray, RayInSpace& world,
                  const RayQuery& query, Search& search) {
     const Object& object = state.scene->objects[entry.object];
     if ((object.mask & query.mask) == 0) return false;
     const Instance& instance = state.instances[entry.object];
     const Passage passage{*state.scene, object, instance, ray, query, object_ray(instance, ray)};
-    return std::visit(ShapeTrace<Search>{passage, entry.part, search}, object.shape);
+    if (instance.identity || instance.tree == nullptr) {
+        return std::visit(ShapeTrace<Search>{passage, &world, entry.part, search}, object.shape);
+    }
+    RayInSpace local(passage.local, instance);
+    return std::visit(ShapeTrace<Search>{passage, &local, entry.part, search}, object.shape);
 }
 
 template <typename Search>
@@ -147,38 +179,30 @@ bool trace_primitive(const AccelState& state, std::uint32_t object, std::uint32_
     const Instance& instance = state.instances[object];
     const Passage passage{*state.scene, state.scene->objects[object], instance, ray,
                           query,        object_ray(instance, ray)};
-    return ShapeTrace<Search>{passage, {}, search}.primitive(primitive);
-}
-
-// By how much the top tree's boxes are widened for a ray.
-inline float top_slop(const Ray& ray) {
-    return kDoubleSlop *
-           std::max({std::abs(ray.origin.x), std::abs(ray.origin.y), std::abs(ray.origin.z)});
+    return ShapeTrace<Search>{passage, nullptr, {}, search}.primitive(primitive);
 }
 
 // Down the top tree, or a part of it.
 template <typename Search>
-bool trace_top(const AccelState& state, const WideRef& part, const Ray& ray, const RayQuery& query,
-               Search& search) {
-    const SlabRay slabs(ray.origin, ray.direction, top_slop(ray));
+bool trace_top(const AccelState& state, const WideRef& part, const Ray& ray, RayInSpace& world,
+               const RayQuery& query, Search& search) {
     return walk(
-        state.top, part, slabs, ray.t_min, [&]() HWY_ATTR { return search.limit(); },
+        state.top, part, world.slabs(), ray.t_min, [&]() HWY_ATTR { return search.limit(); },
         [&](const WideRef& leaf) HWY_ATTR {
-            for (std::uint32_t i = 0; i < leaf.count; ++i) {
-                const TopEntry& entry = state.entries[state.top.indices[leaf.first + i]];
-                if (trace_entry(state, entry, ray, query, search)) return true;
-            }
-            return false;
+            return each_index(state.top, leaf, [&](std::uint32_t entry) HWY_ATTR {
+                return trace_entry(state, state.entries[entry], ray, world, query, search);
+            });
         });
 }
 
 template <typename Search>
 void trace_ray(const AccelState& state, const Ray& ray, const RayQuery& query, Search& search) {
     if (!usable(ray)) return;
+    RayInSpace world(ray, state.reach);
     for (const std::uint32_t object : state.unbounded) {
-        if (trace_entry(state, {object, {}}, ray, query, search)) return;
+        if (trace_entry(state, {object, {}}, ray, world, query, search)) return;
     }
-    if (!state.top.empty()) trace_top(state, state.top.root, ray, query, search);
+    if (!state.top.empty()) trace_top(state, state.top.root, ray, world, query, search);
 }
 
 }  // namespace raypick::HWY_NAMESPACE

@@ -2,6 +2,7 @@
 #define HWY_TARGET_INCLUDE "tracer/accel/trace_rays.cpp"
 #include <hwy/foreach_target.h>
 
+#include "tracer/accel/courses-inl.h"
 #include "tracer/accel/group_trace-inl.h"
 #include "tracer/accel/searches.h"
 #include "tracer/accel/single_ray-inl.h"
@@ -49,6 +50,73 @@ std::vector<Hit> all_hits(const AccelState& state, const Ray& ray, const RayQuer
 
 namespace {
 
+// So many rays hide what each of them waits for.
+constexpr std::size_t kInterleaved = 6;
+
+// Takes the lowest ray out of the mask.
+std::size_t take_ray(RayMask& mask) {
+    const auto ray = static_cast<std::size_t>(std::countr_zero(mask));
+    mask &= mask - 1;
+    return ray;
+}
+
+template <typename Search>
+void trace_unbounded(const AccelState& state, const Ray& any_ray, const RayQuery& query,
+                     Search& search) {
+    if (state.unbounded.empty()) return;
+    const Ray ray = from_origin(any_ray);
+    RayInSpace world(ray, state.reach);
+    for (const std::uint32_t object : state.unbounded) {
+        if (trace_entry(state, {object, {}}, ray, world, query, search)) return;
+    }
+}
+
+// The mask's rays are usable.
+void closest_one_by_one(const AccelState& state, RayMask mask, std::span<const Ray> rays,
+                        std::span<Hit> hits, const RayQuery& query) {
+    RayMask ambiguous = 0;
+    run_courses<ClosestSearch, kInterleaved>(
+        [&](Course<ClosestSearch>& course, std::size_t& ray) HWY_ATTR {
+            if (mask == 0) return false;
+            ray = take_ray(mask);
+            ClosestSearch closest(rays[ray].t_max);
+            trace_unbounded(state, rays[ray], query, closest);
+            course.start(state, rays[ray], query, closest);
+            return true;
+        },
+        [&](const Course<ClosestSearch>& course, std::size_t ray) HWY_ATTR {
+            hits[ray] = course.search().winner();
+            if (course.search().ambiguous()) ambiguous |= RayMask{1} << ray;
+        });
+    each_ray(ambiguous, [&](std::size_t ray) HWY_ATTR {
+        hits[ray] = HWY_NAMESPACE::closest_hit(state, rays[ray], query).value_or(Hit{});
+    });
+}
+
+RayMask any_one_by_one(const AccelState& state, RayMask mask, std::span<const Ray> rays,
+                       const RayQuery& query) {
+    RayMask found = 0;
+    run_courses<AnySearch, kInterleaved>(
+        [&](Course<AnySearch>& course, std::size_t& ray) HWY_ATTR {
+            while (mask != 0) {
+                ray = take_ray(mask);
+                AnySearch any(rays[ray].t_max);
+                trace_unbounded(state, rays[ray], query, any);
+                if (any.found()) {
+                    found |= RayMask{1} << ray;
+                    continue;
+                }
+                course.start(state, rays[ray], query, any);
+                return true;
+            }
+            return false;
+        },
+        [&](const Course<AnySearch>& course, std::size_t ray) HWY_ATTR {
+            if (course.search().found()) found |= RayMask{1} << ray;
+        });
+    return found;
+}
+
 void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::span<Hit> hits,
                       const RayQuery& query) {
     const Chunk chunk(state, rays, query);
@@ -66,9 +134,7 @@ void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::s
                            HWY_ATTR { choose(state, search, ray, rays[ray], query, hits[ray]); });
         alone |= search.lost;
     }
-    each_ray(alone, [&](std::size_t ray) HWY_ATTR {
-        hits[ray] = HWY_NAMESPACE::closest_hit(state, rays[ray], query).value_or(Hit{});
-    });
+    closest_one_by_one(state, alone, rays, hits, query);
 }
 
 void any_of_chunk(const AccelState& state, std::span<const Ray> rays,
@@ -82,9 +148,7 @@ void any_of_chunk(const AccelState& state, std::span<const Ray> rays,
         GroupTrace(state, rays, query, search).run(chunk.world, mask);
         found |= search.blocked;
     }
-    each_ray(chunk.alone, [&](std::size_t ray) HWY_ATTR {
-        if (HWY_NAMESPACE::any_hit(state, rays[ray], query)) found |= RayMask{1} << ray;
-    });
+    found |= any_one_by_one(state, chunk.alone, rays, query);
     for (std::size_t i = 0; i < rays.size(); ++i)
         blocked[i] = static_cast<std::uint8_t>((found >> i) & 1);
 }

@@ -4,6 +4,7 @@
 #include "tracer/geometry/rounding.h"
 #include "tracer/parallel/parallel.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -45,6 +46,7 @@ struct TreeSource {
     std::size_t count = 0;
     BoxSource boxes;
     LeafCosts costs;
+    const Mesh* mesh = nullptr;  // whose triangles go into patches
 };
 
 template <typename BoxOf>
@@ -59,7 +61,8 @@ TreeSource source_of(const Mesh& mesh) {
     return {{mesh.positions.data(), mesh.triangles.data()},
             mesh.triangles.size(),
             one_by_one([&mesh](std::size_t i) { return triangle_box(mesh, i); }),
-            kWideSurfaceLeaves};
+            kWideSurfaceLeaves,
+            &mesh};
 }
 
 TreeSource source_of(const SphereSet& set) {
@@ -95,6 +98,12 @@ std::shared_ptr<const PrimitiveTree> build_tree(const TreeSource& source,
     tree.bvh = widen(options.quality == TreeQuality::first
                          ? build_bvh_fast(source.count, source.boxes, how)
                          : build_bvh(source.count, source.boxes, how));
+    if (source.mesh != nullptr) {
+        tree.patches = take_triangles(tree.bvh, *source.mesh, threads, options.stop);
+    }
+    const Bounds& box = tree.bvh.bounds;
+    const glm::vec3 farthest = glm::max(glm::abs(box.min), glm::abs(box.max));
+    tree.reach = std::max({farthest.x, farthest.y, farthest.z});
     return std::make_shared<const PrimitiveTree>(std::move(tree));
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tracer/accel/accel.h"
+#include "tracer/accel/triangle_patches.h"
 #include "tracer/bvh/wide_bvh.h"
 #include "tracer/scene/scene.h"
 
@@ -19,6 +20,10 @@ struct PrimitiveTree {
     std::size_t count = 0;  // of primitives
     TreeQuality quality = TreeQuality::many_rays;
     WideBvh bvh;
+    TrianglePatches patches;  // of a mesh
+    float reach = 0.0f;       // the largest coordinate
+
+    [[nodiscard]] std::uint64_t bytes() const { return bvh.bytes() + patches.bytes(); }
 };
 
 using TreeList = std::vector<std::shared_ptr<const PrimitiveTree>>;

@@ -14,6 +14,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include <hwy/highway.h>
 
@@ -43,10 +44,28 @@ HWY_INLINE V number_or_smaller(D /*d*/, V number, V instead) {
 // widened by it, so that whatever these would find is offered to them.
 inline constexpr float kDoubleSlop = 0x1p-42f;
 
-// The children that a ray may meet.
-struct BoxHits {
-    std::uint32_t mask = 0;
-    HWY_ALIGN std::array<float, kWidth> enter;  // at the earliest; of those in the mask
+// As many boxes of a node as one instruction takes.
+using Boxes = hn::CappedTag<float, kWidth>;
+inline constexpr std::size_t kBoxesAtOnce = hn::MaxLanes(Boxes());
+
+template <class M>
+HWY_INLINE std::uint32_t box_bits(M mask) {
+    std::uint8_t stored[8] = {};
+    hn::StoreMaskBits(Boxes(), mask, stored);
+    return stored[0];
+}
+
+// Where a ray may go on, and where it enters there at the earliest. Not initialised, as it is
+// large.
+struct WaitingBoxes {
+    std::size_t count;
+    float enter[WideBvh::kMostWaiting];
+    std::uint32_t ref[WideBvh::kMostWaiting];
+
+    void push(float at, std::uint32_t what) {
+        enter[count] = at;
+        ref[count++] = what;
+    }
 };
 
 // A ray as the slab tests see it. `slop` widens every box by an absolute amount, for rays that were
@@ -57,45 +76,91 @@ public:
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto i = static_cast<int>(axis);
             const float inverse = 1.0f / direction[i];
-            const bool negative = std::signbit(inverse);
-            first_[axis] = negative ? 3 + axis : axis;
-            second_[axis] = negative ? axis : 3 + axis;
+            // Without a branch, as signs can't be foretold.
+            const std::size_t negative = std::bit_cast<std::uint32_t>(inverse) >> 31;
+            const float widen = std::copysign(slop, inverse);
+            first_[axis] = kWidth * (axis + 3 * negative);
+            second_[axis] = kWidth * (axis + 3 - 3 * negative);
+            octant_ |= negative << axis;
             inverse_near_[axis] = inverse * kShrink;
             inverse_far_[axis] = inverse * kGrow;
-            near_origin_[axis] = origin[i] + (negative ? -slop : slop);
-            far_origin_[axis] = origin[i] - (negative ? -slop : slop);
+            near_origin_[axis] = origin[i] + widen;
+            far_origin_[axis] = origin[i] - widen;
         }
     }
 
-    // The children's boxes that the ray may meet within [t_min, t_max]. Conservative under rounding
-    // (Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013); 0 * infinity counts as inside the slab.
-    HWY_INLINE void meet(const WideNode& node, float t_min, float t_max, BoxHits& hits) const {
-        const hn::CappedTag<float, kWidth> d;
-        std::uint32_t mask = 0;
-        for (std::size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
-            auto near = hn::Set(d, t_min);
-            auto far = hn::Set(d, t_max);
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const auto first = hn::Load(d, node.planes[first_[axis]].data() + i);
-                const auto second = hn::Load(d, node.planes[second_[axis]].data() + i);
-                near = number_or_larger(d,
-                                        hn::Mul(hn::Sub(first, hn::Set(d, near_origin_[axis])),
-                                                hn::Set(d, inverse_near_[axis])),
-                                        near);
-                far = number_or_smaller(d,
-                                        hn::Mul(hn::Sub(second, hn::Set(d, far_origin_[axis])),
-                                                hn::Set(d, inverse_far_[axis])),
-                                        far);
+    // Puts the children whose boxes the ray may meet within [t_min, t_max] onto the stack, near
+    // ones last. Conservative under rounding (Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013); 0
+    // * infinity counts as inside the slab.
+    HWY_INLINE void push_met(const WideNode& node, float t_min, float t_max,
+                             WaitingBoxes& stack) const {
+        const Boxes d;
+        if constexpr (kBoxesAtOnce == kWidth) {
+            const Interval met = meet(node, 0, t_min, t_max);
+            push_ordered(node, met, stack);
+        } else {
+            HWY_ALIGN float enter[kWidth];
+            std::uint32_t mask = 0;
+            for (std::size_t i = 0; i < kWidth; i += kBoxesAtOnce) {
+                const Interval met = meet(node, i, t_min, t_max);
+                hn::Store(met.near, d, enter + i);
+                mask |= box_bits(hn::Le(met.near, met.far)) << i;
             }
-            hn::Store(near, d, hits.enter.data() + i);
-            std::uint8_t bits[8] = {};
-            hn::StoreMaskBits(d, hn::Le(near, far), bits);
-            mask |= static_cast<std::uint32_t>(bits[0]) << i;
+            for (std::uint32_t order = node.far_to_near(octant_), i = 0; i < kWidth;
+                 ++i, order >>= 3) {
+                if (((mask >> (order & 7u)) & 1u) != 0) {
+                    stack.push(enter[order & 7u], node.child[order & 7u]);
+                }
+            }
         }
-        hits.mask = mask;
     }
 
 private:
+    using BoxFloats = hn::Vec<Boxes>;
+    struct Interval {
+        BoxFloats near, far;
+    };
+
+    HWY_INLINE Interval meet(const WideNode& node, std::size_t i, float t_min, float t_max) const {
+        const Boxes d;
+        const float* planes = node.planes[0].data() + i;
+        auto near = hn::Set(d, t_min);
+        auto far = hn::Set(d, t_max);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto first = hn::Load(d, planes + first_[axis]);
+            const auto second = hn::Load(d, planes + second_[axis]);
+            near = number_or_larger(d,
+                                    hn::Mul(hn::Sub(first, hn::Set(d, near_origin_[axis])),
+                                            hn::Set(d, inverse_near_[axis])),
+                                    near);
+            far = number_or_smaller(d,
+                                    hn::Mul(hn::Sub(second, hn::Set(d, far_origin_[axis])),
+                                            hn::Set(d, inverse_far_[axis])),
+                                    far);
+        }
+        return {near, far};
+    }
+
+    HWY_INLINE void push_ordered(const WideNode& node, const Interval& met,
+                                 WaitingBoxes& stack) const {
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2
+        const Boxes d;
+        const hn::Rebind<std::uint32_t, Boxes> du;
+        HWY_ALIGN static constexpr std::uint32_t kShifts[8] = {0, 3, 6, 9, 12, 15, 18, 21};
+        const auto order = hn::Shr(hn::Set(du, node.far_to_near(octant_)), hn::Load(du, kShifts));
+        const BoxFloats near{_mm256_permutevar8x32_ps(met.near.raw, order.raw)};
+        const BoxFloats far{_mm256_permutevar8x32_ps(met.far.raw, order.raw)};
+        const hn::Vec<decltype(du)> child{
+            _mm256_permutevar8x32_epi32(hn::Load(du, node.child.data()).raw, order.raw)};
+        const auto mask = hn::Le(near, far);
+        hn::StoreU(hn::Compress(near, mask), d, stack.enter + stack.count);
+        hn::StoreU(hn::Compress(child, hn::RebindMask(du, mask)), du, stack.ref + stack.count);
+        stack.count += hn::CountTrue(d, mask);
+#else
+        (void)node, (void)met, (void)stack;
+#endif
+    }
+
     static constexpr float kGrow = 1.0f + 8.0f * 5.9604645e-8f;
     static constexpr float kShrink = 1.0f - 8.0f * 5.9604645e-8f;
 
@@ -103,8 +168,9 @@ private:
     std::array<float, 3> inverse_far_{};
     std::array<float, 3> near_origin_{};
     std::array<float, 3> far_origin_{};
-    std::array<std::size_t, 3> first_{};  // the plane that it meets first
+    std::array<std::size_t, 3> first_{};  // the plane that it meets first: where a node has it
     std::array<std::size_t, 3> second_{};
+    std::size_t octant_ = 0;
 };
 
 // Calls leaf(ref) for the leaves that the ray may meet before limit(), near ones first; limit() may
@@ -112,36 +178,20 @@ private:
 template <typename Limit, typename Leaf>
 bool walk(const WideBvh& bvh, const WideRef& start, const SlabRay& ray, float t_min,
           const Limit& limit, const Leaf& leaf) {
-    struct Waiting {
-        std::uint32_t first;
-        std::uint32_t count;
-        float enter;
-    };
-    Waiting stack[WideBvh::kMostWaiting];  // NOLINT: not initialised, for it is large
-    std::size_t waiting = 0;
-    BoxHits hits;
+    WaitingBoxes stack;  // NOLINT: see there
+    stack.count = 0;
     WideRef at = start;
     for (;;) {
-        if (at.count > 0) {
+        if (at.is_leaf()) {
             if (leaf(at)) return true;
         } else {
-            const WideNode& node = bvh.nodes[at.first];
-            ray.meet(node, t_min, limit(), hits);
-            const std::size_t nearer = waiting;
-            for (std::uint32_t mask = hits.mask; mask != 0; mask &= mask - 1) {
-                const auto i = static_cast<std::size_t>(std::countr_zero(mask));
-                const float enter = hits.enter[i];
-                std::size_t place = waiting++;
-                for (; place > nearer && stack[place - 1].enter < enter; --place)
-                    stack[place] = stack[place - 1];
-                stack[place] = {node.child[i], node.count[i], enter};
-            }
+            ray.push_met(bvh.nodes[at.index()], t_min, limit(), stack);
         }
         do {
-            if (waiting == 0) return false;
-            --waiting;
-        } while (!(stack[waiting].enter <= limit()));
-        at = {stack[waiting].first, stack[waiting].count};
+            if (stack.count == 0) return false;
+            --stack.count;
+        } while (!(stack.enter[stack.count] <= limit()));
+        at = {stack.ref[stack.count]};
     }
 }
 

@@ -50,7 +50,7 @@ inline constexpr LeafCosts kWideLeaves{
 // The same for surfaces: what lies near each other there is near enough for one leaf, and not to
 // look whether it is saves an eighth of the time.
 inline constexpr LeafCosts kWideSurfaceLeaves{
-    .node = 0.3f, .block = 1.0f, .block_size = 4, .min_leaf = 4, .max_leaf = 8};
+    .node = 0.3f, .block = 1.0f, .block_size = 8, .min_leaf = 6, .max_leaf = 8};
 
 struct BvhOptions {
     LeafCosts costs;

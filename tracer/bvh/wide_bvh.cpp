@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 namespace raypick {
@@ -56,16 +57,49 @@ Bounds WideNode::box(std::uint32_t i) const {
     return {{planes[0][i], planes[1][i], planes[2][i]}, {planes[3][i], planes[4][i], planes[5][i]}};
 }
 
+// By their centres along the octant's diagonal; in opposite octants the other way round.
+void WideNode::sort_children() {
+    for (std::size_t octant = 0; octant < 4; ++octant) {
+        std::array<float, kWidth> place{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const float sign = ((octant >> axis) & 1) != 0 ? -1.0f : 1.0f;
+            for (std::size_t i = 0; i < kWidth; ++i)
+                place[i] += sign * (planes[axis][i] + planes[3 + axis][i]);
+        }
+        std::array<std::uint32_t, kWidth> sorted{0, 1, 2, 3, 4, 5, 6, 7};
+        for (std::size_t i = 1; i < kWidth; ++i) {
+            for (std::size_t k = i; k > 0 && place[sorted[k - 1]] < place[sorted[k]]; --k)
+                std::swap(sorted[k - 1], sorted[k]);
+        }
+        std::uint32_t forwards = 0;
+        std::uint32_t backwards = 0;
+        for (std::size_t i = 0; i < kWidth; ++i) {
+            forwards |= sorted[i] << (3 * i);
+            backwards |= sorted[kWidth - 1 - i] << (3 * i);
+        }
+        std::memcpy(order.data() + 3 * octant, &forwards, 3);
+        std::memcpy(order.data() + 3 * (7 - octant), &backwards, 3);
+    }
+}
+
 WideBvh widen(Bvh&& bvh) {
     WideBvh wide;
     wide.indices = std::move(bvh.indices);
+    if (wide.indices.size() >= WideRef::kLeaf) {
+        throw std::length_error("a tree has place for 2147483647 primitives");
+    }
     if (bvh.nodes.empty()) return wide;
     const std::vector<BvhNode>& nodes = bvh.nodes;
     wide.bounds = nodes[0].bounds;
+    const auto leaf_of = [&wide](const BvhNode& leaf) {
+        wide.indices[leaf.first + leaf.count - 1] |= WideBvh::kLast;
+        return WideRef::leaf(leaf.first);
+    };
     if (nodes[0].is_leaf()) {
-        wide.root = {nodes[0].first, nodes[0].count};
+        wide.root = leaf_of(nodes[0]);
         return wide;
     }
+    wide.root = WideRef::node(0);
     wide.nodes.reserve(nodes.size() / 8 + 1);
     wide.nodes.emplace_back();
     // Depth first, so that what a ray meets one after the other lies close together.
@@ -75,7 +109,7 @@ WideBvh widen(Bvh&& bvh) {
         todo.pop_back();
         const Children children = open_node(nodes, at.binary);
         WideNode node;
-        node.children = children.count;
+        node.child.fill(WideRef::kNothing);
         for (std::uint32_t i = 0; i < kWidth; ++i) {
             if (i >= children.count) {
                 set_box(node, i, Bounds{});
@@ -83,15 +117,15 @@ WideBvh widen(Bvh&& bvh) {
             }
             const BvhNode& child = nodes[children.node[i]];
             set_box(node, i, child.bounds);
-            node.child[i] = child.first;
-            node.count[i] = static_cast<std::uint8_t>(child.count);
+            if (child.is_leaf()) node.child[i] = leaf_of(child).bits;
         }
         for (std::uint32_t i = children.count; i-- > 0;) {
-            if (node.count[i] > 0) continue;
+            if (nodes[children.node[i]].is_leaf()) continue;
             node.child[i] = static_cast<std::uint32_t>(wide.nodes.size());
             wide.nodes.emplace_back();
             todo.push_back({children.node[i], node.child[i]});
         }
+        node.sort_children();
         wide.nodes[at.wide] = node;
     }
     return wide;

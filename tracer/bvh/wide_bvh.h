@@ -1,41 +1,62 @@
 // The form of a tree that rays run on: nodes of eight children, whose boxes are tested at once.
 //
-// Source: Wald, Benthin, Boulos, "Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using
-// Multi-branching BVHs", 2008.
+// Sources: Wald, Benthin, Boulos, "Getting Rid of Packets: Efficient SIMD Single-Ray Traversal
+// using Multi-branching BVHs", 2008; Fuetterling et al., "Accelerated Single Ray Tracing for Wide
+// Vector Units", 2017 (children ordered by octant beforehand).
 #pragma once
 
 #include "tracer/bvh/bvh.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 namespace raypick {
 
 inline constexpr std::uint32_t kWidth = 8;
 
+// A place in a tree: a node, or a leaf.
+struct WideRef {
+    static constexpr std::uint32_t kLeaf = 1u << 31;
+    static constexpr std::uint32_t kNothing = ~0u;
+
+    std::uint32_t bits = kNothing;
+
+    static WideRef node(std::uint32_t index) { return {index}; }
+    static WideRef leaf(std::uint32_t first) { return {first | kLeaf}; }
+    [[nodiscard]] bool is_leaf() const { return (bits & kLeaf) != 0; }
+    // Of a node, or of a leaf's first index.
+    [[nodiscard]] std::uint32_t index() const { return bits & ~kLeaf; }
+
+    friend bool operator==(const WideRef&, const WideRef&) = default;
+};
+
 // Box i reaches from planes[axis][i] to planes[3 + axis][i]. Where there is no child it is empty,
 // so that every ray misses it.
 struct alignas(64) WideNode {
     std::array<std::array<float, kWidth>, 6> planes{};
-    // Of an inner child: its node. Of a leaf: the first of its `count` indices.
-    std::array<std::uint32_t, kWidth> child{};
-    std::array<std::uint8_t, kWidth> count{};  // 0: inner
-    std::uint32_t children = 0;                // the first ones are there
+    std::array<std::uint32_t, kWidth> child{};  // as in WideRef
+    // For each octant of directions (bit `axis` set: negative there) the children from far to near,
+    // three bits each. The last one may be read as four bytes, too.
+    std::array<std::uint8_t, 32> order{};
 
     [[nodiscard]] Bounds box(std::uint32_t i) const;
-};
-
-// A place in a tree: a node, or a leaf's indices.
-struct WideRef {
-    std::uint32_t first = 0;
-    std::uint32_t count = 0;  // 0: node `first`; else indices [first, first + count)
+    [[nodiscard]] WideRef ref(std::uint32_t i) const { return {child[i]}; }
+    [[nodiscard]] std::uint32_t far_to_near(std::size_t octant) const {
+        std::uint32_t children = 0;
+        std::memcpy(&children, order.data() + 3 * octant, sizeof children);
+        return children;
+    }
+    void sort_children();  // sets `order`
 };
 
 struct WideBvh {
-    static constexpr std::uint32_t kLargestLeaf = 255;
-    // Entries of a traversal's stack: seven siblings wait at each level.
-    static constexpr std::size_t kMostWaiting = (kWidth - 1) * Bvh::kMaxDepth + 1;
+    // Entries of a traversal's stack: seven siblings wait at each level; all eight are written.
+    static constexpr std::size_t kMostWaiting = (kWidth - 1) * Bvh::kMaxDepth + 1 + kWidth;
+    // Of an index: the last one of its leaf.
+    static constexpr std::uint32_t kLast = 1u << 31;
 
     std::vector<WideNode> nodes;
     std::vector<std::uint32_t> indices;
@@ -48,7 +69,18 @@ struct WideBvh {
     }
 };
 
-// Takes up to eight descendants of a binary node into one, those of the largest surface first.
+// Calls body(index) for a leaf's indices until it returns true, and returns whether it did.
+template <typename Body>
+bool each_index(const WideBvh& bvh, const WideRef& leaf, const Body& body) {
+    const std::uint32_t* index = bvh.indices.data() + leaf.index();
+    while (true) {
+        if (body(*index & ~WideBvh::kLast)) return true;
+        if ((*index++ & WideBvh::kLast) != 0) return false;
+    }
+}
+
+// Takes up to eight descendants of a binary node into one, those of the largest surface first. For
+// less than 2^31 boxes; throws std::length_error otherwise.
 WideBvh widen(Bvh&& bvh);
 
 }  // namespace raypick
