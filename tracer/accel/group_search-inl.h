@@ -98,6 +98,15 @@ struct AnyOfOne {
     }
 };
 
+}  // namespace raypick::HWY_NAMESPACE
+namespace raypick {
+template <>
+inline constexpr bool kKeepsHits<HWY_NAMESPACE::ClosestOfOne> = false;
+template <>
+inline constexpr bool kKeepsHits<HWY_NAMESPACE::AnyOfOne> = false;
+}  // namespace raypick
+namespace raypick::HWY_NAMESPACE {
+
 inline ClosestOfOne one_of(ClosestOfGroup& group, std::size_t ray, std::uint32_t object) {
     return {group, ray, object};
 }

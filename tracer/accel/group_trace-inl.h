@@ -9,10 +9,12 @@
 #include "tracer/accel/courses-inl.h"
 #include "tracer/accel/decide_triangles-inl.h"
 #include "tracer/accel/group_boxes-inl.h"
+#include "tracer/accel/group_cones-inl.h"
 #include "tracer/accel/group_search-inl.h"
 #include "tracer/accel/group_spheres-inl.h"
 #include "tracer/accel/group_triangles-inl.h"
 #include "tracer/accel/single_ray-inl.h"
+#include "tracer/accel/sole_elements-inl.h"
 
 #include <span>
 
@@ -93,7 +95,8 @@ private:
         if ((object.mask & query_.mask) == 0) return;
         const Instance& instance = state_.instances[entry.object];
         const bool in_groups = std::holds_alternative<MeshInstance>(object.shape) ||
-                               std::holds_alternative<SphereSetInstance>(object.shape);
+                               std::holds_alternative<SphereSetInstance>(object.shape) ||
+                               std::holds_alternative<ConeSetInstance>(object.shape);
         const float reach = in_groups ? instance.tree->reach : 0.0f;
         if (!in_groups || !(reach < kFarthestReach)) {
             each_on_its_own(entry, mask);
@@ -149,6 +152,17 @@ private:
                     return false;
                 });
             });
+        } else if (const auto* cones = std::get_if<ConeSetInstance>(&object.shape)) {
+            const ConeSet& set = state_.scene->cone_sets[cones->set];
+            search_tree(entry, space, mask, [&](const WideRef& leaf, RayMask met) HWY_ATTR {
+                each_index(tree.bvh, leaf, [&](std::uint32_t primitive) HWY_ATTR {
+                    const std::size_t first = std::size_t{2} * primitive;
+                    judge_all(entry, space, shown,
+                              group_cone(set.ends[first], set.ends[first + 1], set.capped),
+                              primitive, met);
+                    return false;
+                });
+            });
         } else {
             const SetId set = std::get<SphereSetInstance>(object.shape).set;
             const std::span<const glm::vec4> spheres = state_.scene->sphere_sets[set].spheres;
@@ -182,7 +196,7 @@ private:
                               RayMask mask) {
         const bool holes = state_.instances[entry.object].holes;
         each_vector(mask, [&](std::size_t ray, RayMask bits) HWY_ATTR {
-            const Verdict verdict = judge(space, search_.limits, shape, shown, ray);
+            const Verdict verdict = judge_some(space, search_.limits, shape, shown, ray, bits);
             if ((verdict.may & bits) == 0) return;
             settle(verdict, ray, bits, entry.object, primitive, holes);
         });

@@ -3,6 +3,8 @@
 
 #include "tracer/accel/accel_state.h"
 #include "tracer/accel/cut_out.h"
+#include "tracer/accel/searches.h"
+#include "tracer/geometry/cone.h"
 #include "tracer/geometry/ray.h"
 
 #include <glm/geometric.hpp>
@@ -58,6 +60,12 @@ struct Passage {
     }
 };
 
+// Whether a hit's uv matters to anyone.
+template <typename Search>
+bool wants_uv(const Passage& passage) {
+    return kKeepsHits<Search> || passage.instance.holes || passage.query.accept;
+}
+
 // Offers to the search what a shape's intersection found; true: stop. `element` is the shape's
 // number in a set: that is then the primitive, whatever side of the shape was hit.
 template <typename Search>
@@ -83,26 +91,35 @@ bool offer_sphere(const Passage& passage, const Sphere& sphere, std::uint32_t el
     for (const double root : roots->t) {
         const auto t = static_cast<float>(root);
         if (!passage.in_range(t, search.limit())) continue;
-        const bool front =
-            glm::dot(passage.local.origin + root * passage.local.direction - sphere.centre,
-                     passage.local.direction) < 0.0;
-        if (!shows(passage.object.sides, front)) continue;
-        const ShapeHit found = sphere_hit(sphere, passage.local, root);
-        const Hit hit{passage.object.id, element, t, glm::vec2(found.uv),
-                      glm::dot(found.normal, passage.local.direction) < 0.0};
+        const glm::dvec3 normal =
+            (passage.local.origin + root * passage.local.direction - sphere.centre) / sphere.radius;
+        Hit hit{passage.object.id, element, t, glm::vec2(0.0f),
+                glm::dot(normal, passage.local.direction) < 0.0};
+        if (!shows(passage.object.sides, hit.front_face)) continue;
+        if (wants_uv<Search>(passage)) {
+            hit.uv = glm::vec2(sphere_hit(sphere, passage.local, root).uv);
+        }
         if (passage.admits(hit) && search.offer(hit)) return true;
     }
     return false;
 }
 
-// Cones a little outside of what the search looks at don't matter.
+// The same of a cone.
 template <typename Search>
-ShapeHits hits_in_range(const Passage& passage, const Cone& cone, const Search& search) {
-    constexpr double kMargin = 1e-6;
-    const auto from = static_cast<double>(passage.ray.t_min);
-    const auto to = static_cast<double>(search.limit());
-    return intersect(cone, passage.local, from - kMargin * std::abs(from),
-                     to + kMargin * std::abs(to));
+bool offer_cone(const Passage& passage, const Cone& cone, std::uint32_t element, Search& search) {
+    const auto roots = cone_roots(cone, passage.local);
+    if (!roots) return false;
+    for (int i = 0; i < roots->count; ++i) {
+        const ConeRoot& root = roots->root[static_cast<std::size_t>(i)];
+        const auto t = static_cast<float>(roots->t(root));
+        if (!passage.in_range(t, search.limit())) continue;
+        Hit hit{passage.object.id, element, t, glm::vec2(0.0f),
+                glm::dot(cone_normal(cone, *roots, root), passage.local.direction) < 0.0};
+        if (!shows(passage.object.sides, hit.front_face)) continue;
+        if (wants_uv<Search>(passage)) hit.uv = glm::vec2(cone_uv(cone, *roots, root));
+        if (passage.admits(hit) && search.offer(hit)) return true;
+    }
+    return false;
 }
 
 }  // namespace raypick

@@ -12,6 +12,10 @@
 
 namespace raypick {
 
+// False for searches that look at no more of a hit than its t.
+template <typename Search>
+inline constexpr bool kKeepsHits = true;
+
 inline float tie_limit(float t) {
     return static_cast<float>(t * (1.0 + kTieGap));
 }
@@ -87,6 +91,9 @@ private:
     float limit_;
     bool found_ = false;
 };
+
+template <>
+inline constexpr bool kKeepsHits<AnySearch> = false;
 
 class AllSearch {
 public:

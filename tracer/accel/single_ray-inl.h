@@ -6,6 +6,7 @@
 #define RAYPICK_SINGLE_RAY_INL_H
 #endif
 
+#include "tracer/accel/cone_filter-inl.h"
 #include "tracer/accel/passage.h"
 #include "tracer/accel/triangle_filter-inl.h"
 #include "tracer/accel/wide_traversal-inl.h"
@@ -16,6 +17,7 @@
 #include <bit>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <variant>
 
 HWY_BEFORE_NAMESPACE();
@@ -83,9 +85,23 @@ struct ShapeTrace {
 
     bool operator()(const ConeSetInstance& instance) const {
         const ConeSet& set = passage.scene.cone_sets[instance.set];
-        return each_primitive([&](std::uint32_t primitive) HWY_ATTR {
-            return offer(passage, hits_in_range(passage, cone_of(set, primitive), search),
-                         primitive, search);
+        const WideBvh& bvh = passage.instance.tree->bvh;
+        const ConeFilter filter(passage.local, passage.ray.t_min,
+                                space->reach(*passage.instance.tree), !passage.instance.identity);
+        return each_leaf([&](const WideRef& leaf) HWY_ATTR {
+            const std::span<const std::uint32_t> primitives = indices_of(bvh, leaf);
+            const std::size_t at_once = hn::Lanes(Four());
+            for (std::size_t i = 0; i < primitives.size(); i += at_once) {
+                const auto some = primitives.subspan(i, std::min(at_once, primitives.size() - i));
+                std::uint32_t left = filter.may_hit(set, some, search.limit());
+                for (; left != 0; left &= left - 1) {
+                    const std::uint32_t primitive =
+                        some[static_cast<std::size_t>(std::countr_zero(left))] & ~WideBvh::kLast;
+                    if (offer_cone(passage, cone_of(set, primitive), primitive, search))
+                        return true;
+                }
+            }
+            return false;
         });
     }
 
@@ -126,7 +142,7 @@ struct ShapeTrace {
         }
         if (const auto* cones = std::get_if<ConeSetInstance>(&shape)) {
             const Cone cone = cone_of(scene.cone_sets[cones->set], number);
-            return offer(passage, raypick::intersect(cone, passage.local), number, search);
+            return offer_cone(passage, cone, number, search);
         }
         return std::visit(*this, shape);
     }

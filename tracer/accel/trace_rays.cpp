@@ -129,7 +129,9 @@ void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::s
         search.candidate_from.fill(std::numeric_limits<float>::infinity());
         GroupTrace(state, rays, query, search).run(chunk.world, mask);
         RayMask open = search.rivalled & ~search.lost;
-        open |= decide_sole(state, search, search.found & ~search.rivalled, rays, hits);
+        const RayMask sole =
+            decide_sole(state, search, search.found & ~search.rivalled, rays, hits);
+        open |= decide_sole_elements(state, search, sole, rays, query, hits);
         each_ray(open, [&](std::size_t ray)
                            HWY_ATTR { choose(state, search, ray, rays[ray], query, hits[ray]); });
         alone |= search.lost;

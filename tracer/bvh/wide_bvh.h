@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <vector>
 
 namespace raypick {
@@ -68,6 +69,15 @@ struct WideBvh {
         return nodes.size() * sizeof(WideNode) + indices.size() * sizeof(std::uint32_t);
     }
 };
+
+// A leaf's indices as they are stored.
+inline std::span<const std::uint32_t> indices_of(const WideBvh& bvh, const WideRef& leaf) {
+    const std::uint32_t* first = bvh.indices.data() + leaf.index();
+    std::size_t count = 1;
+    while ((first[count - 1] & WideBvh::kLast) == 0)
+        ++count;
+    return {first, count};
+}
 
 // Calls body(index) for a leaf's indices until it returns true, and returns whether it did.
 template <typename Body>

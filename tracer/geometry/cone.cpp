@@ -1,8 +1,9 @@
 // The truncated cone, as the convex body between its caps: the part of the ray between the two
 // planes and the part within the side are intervals, and the body is where they overlap. So a ray
 // from the inside of a capped cone always meets it.
+#include "tracer/geometry/cone.h"
+
 #include "tracer/geometry/axis_frame.h"
-#include "tracer/geometry/shapes.h"
 
 #include <glm/geometric.hpp>
 
@@ -17,46 +18,20 @@ namespace raypick {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::uint32_t kSide = 0;
-constexpr std::uint32_t kBaseCap = 1;
-constexpr std::uint32_t kApexCap = 2;
 
 struct Interval {
     double from = -kInfinity;
     double to = kInfinity;
 };
 
-// The cone along its axis: the radius at height h above the base is base_radius + widening h.
-struct Profile {
-    glm::dvec3 axis{0.0, 1.0, 0.0};
-    double length = 1.0;
-    double widening = 0.0;
-};
-
-Profile profile_of(const Cone& cone) {
+ConeProfile profile_of(const Cone& cone) {
     const glm::dvec3 axis = cone.apex - cone.base;
     const double length = glm::length(axis);
     return {axis / length, length, (cone.apex_radius - cone.base_radius) / length};
 }
 
-// A ray split along and across the axis, seen from the base's centre; its parameter is counted from
-// `start` of the original ray's t.
-struct AxialRay {
-    double start = 0.0;
-    double height = 0.0;
-    double climb = 0.0;
-    glm::dvec3 across{0.0};
-    glm::dvec3 drift{0.0};
-
-    void advance(double t) {
-        start += t;
-        height += t * climb;
-        across += t * drift;
-    }
-};
-
 // Counted from the point nearest to the cone's middle, so that far origins cost no precision.
-AxialRay axial_ray(const Cone& cone, const Profile& profile, const ObjectRay& ray) {
+AxialRay axial_ray(const Cone& cone, const ConeProfile& profile, const ObjectRay& ray) {
     const glm::dvec3 middle = 0.5 * cone.base + 0.5 * cone.apex;
     AxialRay result;
     result.start =
@@ -113,71 +88,73 @@ std::optional<Interval> within_side(const AxialRay& ray, double radius, double g
                         : Interval{-kInfinity, std::min(t0, t1)};
 }
 
-ShapeHit side_hit(const Cone& cone, const Profile& profile, const AxialRay& ray, double t) {
-    const AxisFrame frame = axis_frame(profile.axis);
-    const glm::dvec3 across = ray.across + t * ray.drift;
-    const double distance = glm::length(across);
-    ShapeHit hit;
-    hit.t = ray.start + t;
-    hit.primitive = kSide;
-    // At the tip of a cone the axis stands in for the normal.
-    hit.normal = distance > 0.0
-                     ? across / distance - profile.widening * profile.axis
-                     : std::copysign(1.0, cone.base_radius - cone.apex_radius) * profile.axis;
-    hit.uv = {turn(glm::dot(across, frame.x), glm::dot(across, frame.z)),
-              std::clamp((ray.height + t * ray.climb) / profile.length, 0.0, 1.0)};
-    return hit;
-}
-
-ShapeHit cap_hit(const Cone& cone, const Profile& profile, const AxialRay& ray, double t,
-                 std::uint32_t cap) {
-    const AxisFrame frame = axis_frame(profile.axis);
-    const glm::dvec3 across = ray.across + t * ray.drift;
-    const double radius = cap == kBaseCap ? cone.base_radius : cone.apex_radius;
-    ShapeHit hit;
-    hit.t = ray.start + t;
-    hit.primitive = cap;
-    hit.normal = cap == kBaseCap ? -profile.axis : profile.axis;
-    hit.uv = {turn(glm::dot(across, frame.x), glm::dot(across, frame.z)),
-              std::min(glm::length(across) / radius, 1.0)};
-    return hit;
-}
-
 }  // namespace
 
-ShapeHits intersect(const Cone& cone, const ObjectRay& ray, double from, double to) {
-    const Profile profile = profile_of(cone);
+std::optional<ConeRoots> cone_roots(const Cone& cone, const ObjectRay& ray) {
+    const ConeProfile profile = profile_of(cone);
     AxialRay axial = axial_ray(cone, profile, ray);
     std::optional<Interval> planes = between_planes(axial, profile.length);
-    if (!planes) return {};
+    if (!planes) return std::nullopt;
     const double nearest = nearest_to_axis(axial, *planes);
     axial.advance(nearest);
     const double widest = std::max(cone.base_radius, cone.apex_radius);
-    if (!(glm::dot(axial.across, axial.across) <= widest * widest)) return {};
+    if (!(glm::dot(axial.across, axial.across) <= widest * widest)) return std::nullopt;
     *planes = {planes->from - nearest, planes->to - nearest};
     const auto side = within_side(axial, cone.base_radius + profile.widening * axial.height,
                                   profile.widening * axial.climb);
-    if (!side) return {};
+    if (!side) return std::nullopt;
     const Interval body{std::max(planes->from, side->from), std::min(planes->to, side->to)};
-    if (!(body.from <= body.to) || !std::isfinite(body.from) || !std::isfinite(body.to)) return {};
-
-    ShapeHits hits;
-    const auto add = [&](double t, bool on_side, std::uint32_t cap) {
-        if (axial.start + t < from || axial.start + t > to) return;
-        const double radius = cap == kBaseCap ? cone.base_radius : cone.apex_radius;
-        auto& hit = hits.hit[static_cast<std::size_t>(hits.count)];
+    if (!(body.from <= body.to) || !std::isfinite(body.from) || !std::isfinite(body.to))
+        return std::nullopt;
+    ConeRoots roots{profile, axial, {}, 0};
+    const auto add = [&](double t, bool on_side, ConePart cap) {
+        const double radius = cap == ConePart::base_cap ? cone.base_radius : cone.apex_radius;
         if (on_side || radius == 0.0) {
-            hit = side_hit(cone, profile, axial, t);
+            roots.root[static_cast<std::size_t>(roots.count++)] = {t, ConePart::side};
         } else if (cone.capped) {
-            hit = cap_hit(cone, profile, axial, t, cap);
-        } else {
-            return;
+            roots.root[static_cast<std::size_t>(roots.count++)] = {t, cap};
         }
-        ++hits.count;
     };
     const bool upwards = axial.climb > 0.0;
-    add(body.from, side->from >= planes->from, upwards ? kBaseCap : kApexCap);
-    add(body.to, side->to <= planes->to, upwards ? kApexCap : kBaseCap);
+    add(body.from, side->from >= planes->from, upwards ? ConePart::base_cap : ConePart::apex_cap);
+    add(body.to, side->to <= planes->to, upwards ? ConePart::apex_cap : ConePart::base_cap);
+    return roots;
+}
+
+glm::dvec3 cone_normal(const Cone& cone, const ConeRoots& roots, const ConeRoot& root) {
+    const ConeProfile& profile = roots.profile;
+    if (root.part == ConePart::base_cap) return -profile.axis;
+    if (root.part == ConePart::apex_cap) return profile.axis;
+    const glm::dvec3 across = roots.axial.across + root.after * roots.axial.drift;
+    const double distance = glm::length(across);
+    // At the tip of a cone the axis stands in for the normal.
+    return distance > 0.0 ? across / distance - profile.widening * profile.axis
+                          : std::copysign(1.0, cone.base_radius - cone.apex_radius) * profile.axis;
+}
+
+glm::dvec2 cone_uv(const Cone& cone, const ConeRoots& roots, const ConeRoot& root) {
+    const AxialRay& axial = roots.axial;
+    const AxisFrame frame = axis_frame(roots.profile.axis);
+    const glm::dvec3 across = axial.across + root.after * axial.drift;
+    const double angle = turn(glm::dot(across, frame.x), glm::dot(across, frame.z));
+    if (root.part == ConePart::side) {
+        const double height = axial.height + root.after * axial.climb;
+        return {angle, std::clamp(height / roots.profile.length, 0.0, 1.0)};
+    }
+    const double radius = root.part == ConePart::base_cap ? cone.base_radius : cone.apex_radius;
+    return {angle, std::min(glm::length(across) / radius, 1.0)};
+}
+
+ShapeHits intersect(const Cone& cone, const ObjectRay& ray) {
+    const auto roots = cone_roots(cone, ray);
+    ShapeHits hits;
+    if (!roots) return hits;
+    for (int i = 0; i < roots->count; ++i) {
+        const ConeRoot& root = roots->root[static_cast<std::size_t>(i)];
+        hits.hit[static_cast<std::size_t>(hits.count++)] = {
+            roots->t(root), cone_uv(cone, *roots, root), cone_normal(cone, *roots, root),
+            static_cast<std::uint32_t>(root.part)};
+    }
     return hits;
 }
 

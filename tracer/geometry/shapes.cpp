@@ -1,23 +1,16 @@
 #include "tracer/geometry/shapes.h"
 
+#include "tracer/geometry/sphere_uv.h"
 #include "tracer/geometry/triangle_test.h"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace raypick {
 
 namespace {
-
-// Longitude from +x over +z in [0, 1), colatitude from +y in [0, 1].
-glm::dvec2 sphere_uv(const glm::dvec3& unit_normal) {
-    const double longitude = std::atan2(unit_normal.z, unit_normal.x) / (2.0 * std::numbers::pi);
-    const double colatitude = std::acos(std::clamp(unit_normal.y, -1.0, 1.0)) / std::numbers::pi;
-    return {longitude < 0.0 ? longitude + 1.0 : longitude, colatitude};
-}
 
 // The coordinates other than the one along which the plane's normal is longest.
 glm::dvec2 plane_uv(const Plane& plane, const glm::dvec3& p) {

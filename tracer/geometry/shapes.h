@@ -202,10 +202,7 @@ ShapeHits intersect(const Triangle& triangle, const ObjectRay& ray);
 ShapeHits intersect(const Box& box, const ObjectRay& ray);
 ShapeHits intersect(const Disk& disk, const ObjectRay& ray);
 ShapeHits intersect(const Rectangle& rectangle, const ObjectRay& ray);
-// Hits outside of [from, to] may be left out.
-ShapeHits intersect(const Cone& cone, const ObjectRay& ray,
-                    double from = -std::numeric_limits<double>::infinity(),
-                    double to = std::numeric_limits<double>::infinity());
+ShapeHits intersect(const Cone& cone, const ObjectRay& ray);
 ShapeHits intersect(const Torus& torus, const ObjectRay& ray);
 
 }  // namespace raypick

@@ -1,0 +1,71 @@
+// Vectors of doubles, and triples of these with the operations of glm and std, in the same order so
+// that not a bit differs. Included once for each instruction set.
+#if defined(RAYPICK_DOUBLE_VECTORS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYPICK_DOUBLE_VECTORS_INL_H
+#undef RAYPICK_DOUBLE_VECTORS_INL_H
+#else
+#define RAYPICK_DOUBLE_VECTORS_INL_H
+#endif
+
+#include "tracer/accel/decide_triangles-inl.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+HWY_BEFORE_NAMESPACE();
+namespace raypick::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using LaneDoubles = std::array<double, kDoublesAtOnce>;
+
+template <class M>
+HWY_INLINE std::uint32_t double_bits(M mask) {
+    std::uint8_t stored[8] = {};
+    hn::StoreMaskBits(Doubles(), mask, stored);
+    return stored[0];
+}
+
+HWY_INLINE DoubleVector load_doubles(const LaneDoubles& numbers) {
+    return hn::Load(Doubles(), numbers.data());
+}
+
+// As glm and std do it.
+struct DoubleVector3 {
+    DoubleVector x, y, z;
+};
+HWY_INLINE DoubleVector3 load_doubles(const std::array<LaneDoubles, 3>& numbers) {
+    return {load_doubles(numbers[0]), load_doubles(numbers[1]), load_doubles(numbers[2])};
+}
+HWY_INLINE DoubleVector3 plus(const DoubleVector3& a, const DoubleVector3& b) {
+    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+HWY_INLINE DoubleVector3 minus(const DoubleVector3& a, const DoubleVector3& b) {
+    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE DoubleVector3 times(DoubleVector k, const DoubleVector3& a) {
+    return {hn::Mul(k, a.x), hn::Mul(k, a.y), hn::Mul(k, a.z)};
+}
+HWY_INLINE DoubleVector3 over(const DoubleVector3& a, DoubleVector k) {
+    return {hn::Div(a.x, k), hn::Div(a.y, k), hn::Div(a.z, k)};
+}
+HWY_INLINE DoubleVector dot(const DoubleVector3& a, const DoubleVector3& b) {
+    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+HWY_INLINE DoubleVector length(const DoubleVector3& a) {
+    return hn::Sqrt(dot(a, a));
+}
+HWY_INLINE DoubleVector3 normalize(const DoubleVector3& a) {
+    return times(hn::Div(hn::Set(Doubles(), 1.0), length(a)), a);
+}
+HWY_INLINE DoubleVector smaller(DoubleVector a, DoubleVector b) {
+    return hn::IfThenElse(hn::Lt(b, a), b, a);
+}
+HWY_INLINE DoubleVector larger(DoubleVector a, DoubleVector b) {
+    return hn::IfThenElse(hn::Lt(a, b), b, a);
+}
+
+}  // namespace raypick::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard

@@ -1,0 +1,137 @@
+// Cones and spheres that are a ray's only candidate, several at once. Included once for each
+// instruction set.
+#if defined(RAYPICK_SOLE_ELEMENTS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYPICK_SOLE_ELEMENTS_INL_H
+#undef RAYPICK_SOLE_ELEMENTS_INL_H
+#else
+#define RAYPICK_SOLE_ELEMENTS_INL_H
+#endif
+
+#include "tracer/accel/decide_cones-inl.h"
+#include "tracer/accel/decide_spheres-inl.h"
+#include "tracer/accel/group_search-inl.h"
+#include "tracer/accel/passage.h"
+
+#include <array>
+#include <bit>
+#include <span>
+#include <variant>
+
+HWY_BEFORE_NAMESPACE();
+namespace raypick::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+inline Cone element_of(const Scene& scene, const ConeSetInstance& instance, std::uint32_t number) {
+    return cone_of(scene.cone_sets[instance.set], number);
+}
+inline Sphere element_of(const Scene& scene, const SphereSetInstance& instance,
+                         std::uint32_t number) {
+    return sphere_of(scene.sphere_sets[instance.set], number);
+}
+
+// Up to kDoublesAtOnce rays whose only candidate is an element of a set. `Set` is the instance's
+// type.
+template <typename Set, typename Pairs, typename Decided>
+class SoleElements {
+public:
+    SoleElements(const AccelState& state, const ClosestOfGroup& search, std::span<const Ray> rays,
+                 const RayQuery& query)
+        : state_(state), search_(search), rays_(rays), query_(query) {}
+
+    [[nodiscard]] bool full() const { return count_ == kDoublesAtOnce; }
+
+    // False if this isn't for it.
+    HWY_INLINE bool add(std::size_t ray) {
+        const std::uint32_t index = search_.candidate_object[ray];
+        const Object& object = state_.scene->objects[index];
+        const auto* set = std::get_if<Set>(&object.shape);
+        if (set == nullptr || state_.instances[index].holes) return false;
+        pairs_.set(count_, object_ray(state_.instances[index], rays_[ray]),
+                   element_of(*state_.scene, *set, search_.candidate_primitive[ray]));
+        lanes_[count_++] = ray;
+        mask_ |= RayMask{1} << ray;
+        return true;
+    }
+
+    // Decides those that are left, if that is worth it.
+    RayMask rest(std::span<Hit> hits) { return count_ > 1 ? decide(hits) : mask_; }
+
+    // Those that this can't decide stay in the mask that it returns.
+    RayMask decide(std::span<Hit> hits) {
+        pairs_.fill_from(count_);
+        const Decided decided(pairs_);
+        std::uint32_t left = 0;
+        std::uint32_t leaving = 0;
+        for (std::size_t i = 0; i < count_; ++i) {
+            const std::uint32_t bit = 1u << i;
+            const bool enters = in_range(i, decided.enters_at[i]);
+            const bool leaves = !enters && in_range(i, decided.leaves_at[i]);
+            const std::uint32_t by_side = enters ? decided.enters_by_side : decided.leaves_by_side;
+            if (leaves) leaving |= bit;
+            if (!(enters || leaves) || (decided.ordinary & by_side & bit) == 0) left |= bit;
+        }
+        typename Decided::Hits found;
+        decided.hits_at(leaving, found);
+        RayMask open = 0;
+        for (std::size_t i = 0; i < count_; ++i) {
+            const bool leaves = ((leaving >> i) & 1) != 0;
+            const bool fine = (((found.ordinary & ~left) >> i) & 1) != 0 &&
+                              store(i, leaves ? decided.leaves_at[i] : decided.enters_at[i], found,
+                                    hits[lanes_[i]]);
+            if (!fine) open |= RayMask{1} << lanes_[i];
+        }
+        count_ = 0;
+        mask_ = 0;
+        return open;
+    }
+
+private:
+    [[nodiscard]] bool in_range(std::size_t lane, double at) const {
+        const auto t = static_cast<float>(at);
+        return t > rays_[lanes_[lane]].t_min && t < rays_[lanes_[lane]].t_max;
+    }
+
+    bool store(std::size_t lane, double t, const typename Decided::Hits& found, Hit& hit) const {
+        const std::size_t ray = lanes_[lane];
+        const Object& object = state_.scene->objects[search_.candidate_object[ray]];
+        const bool front = ((found.front >> lane) & 1) != 0;
+        if (!shows(object.sides, front) || !shows(query_.sides, front)) return false;
+        hit = {object.id, search_.candidate_primitive[ray], static_cast<float>(t),
+               glm::vec2(found.uv(lane)), front};
+        return true;
+    }
+
+    const AccelState& state_;
+    const ClosestOfGroup& search_;
+    std::span<const Ray> rays_;
+    const RayQuery& query_;
+    Pairs pairs_;
+    std::array<std::size_t, kDoublesAtOnce> lanes_{};
+    std::size_t count_ = 0;
+    RayMask mask_ = 0;
+};
+
+using SoleCones = SoleElements<ConeSetInstance, ConePairs, ConesDecided>;
+using SoleSpheres = SoleElements<SphereSetInstance, SpherePairs, SpheresDecided>;
+
+// The candidates of rays without rivals as far as they are cones and spheres; the other rays stay
+// in the mask that it returns.
+inline RayMask decide_sole_elements(const AccelState& state, const ClosestOfGroup& search,
+                                    RayMask mask, std::span<const Ray> rays, const RayQuery& query,
+                                    std::span<Hit> hits) {
+    RayMask left = 0;
+    SoleCones cones(state, search, rays, query);
+    SoleSpheres spheres(state, search, rays, query);
+    for (; mask != 0; mask &= mask - 1) {
+        const auto ray = static_cast<std::size_t>(std::countr_zero(mask));
+        if (!cones.add(ray) && !spheres.add(ray)) left |= RayMask{1} << ray;
+        if (cones.full()) left |= cones.decide(hits);
+        if (spheres.full()) left |= spheres.decide(hits);
+    }
+    return left | cones.rest(hits) | spheres.rest(hits);
+}
+
+}  // namespace raypick::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard
