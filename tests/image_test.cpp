@@ -2,6 +2,8 @@
 
 #include "tests/random.h"
 #include "tracer/error.h"
+#include "tracer/render/image_files.h"
+#include "tracer/render/srgb_bytes.h"
 #include "tracer/scene/scene.h"
 
 #include <ImfChannelList.h>
@@ -15,6 +17,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -113,6 +116,77 @@ TEST(Srgb, Bytes) {
     for (int byte = 0; byte < 256; ++byte) {
         EXPECT_EQ(srgb_byte(linear_from_srgb(static_cast<float>(byte) / 255.0f)), byte);
     }
+}
+
+// All 2^30 floats between 0 and 1 agree; here those around each change of byte, and every 1001st.
+TEST(Srgb, BytesByTables) {
+    const SrgbBytes byte;
+    for (const float x : {kNaN, -kInfinity, -1.0f, -0.0f, 0.0f, 1.0f, 17.0f, kInfinity})
+        EXPECT_EQ(byte(x), srgb_byte(x)) << x;
+    const auto one = std::bit_cast<std::uint32_t>(1.0f);
+    std::uint32_t last = 0;
+    for (std::uint32_t bits = 0; bits < one; bits += 1001) {
+        const auto x = std::bit_cast<float>(bits);
+        ASSERT_EQ(byte(x), srgb_byte(x)) << x;
+        const std::uint32_t now = srgb_byte(x);
+        if (now == last) continue;
+        last = now;
+        for (std::uint32_t near = bits - 1001; near < bits + 1001; ++near) {
+            const auto y = std::bit_cast<float>(near);
+            ASSERT_EQ(byte(y), srgb_byte(y)) << y;
+        }
+    }
+    EXPECT_EQ(last, 255u);
+}
+
+// Several bands, the last one smaller, each beginning with a row that looks at the one before.
+TEST_F(ImageFiles, LargePngIsReadBack) {
+    constexpr ImageSize kLarge{700, 501};
+    Image image;
+    image.size = kLarge;
+    Random random(8);
+    for (int row = 0; row < kLarge.rows; ++row) {
+        for (int col = 0; col < kLarge.cols; ++col) {
+            const bool noisy = row % 200 > 150;
+            const auto x = static_cast<float>(noisy ? random.between(0.0, 1.0) : col / 501.0);
+            image.colour.emplace_back(x, 0.5f * x, static_cast<float>(row) / 700.0f);
+        }
+    }
+    const std::vector<std::uint8_t> bytes = png_bytes(image);
+    EXPECT_EQ(png_bytes(image), bytes) << "the same file every time";
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    stbi_uc* pixels = stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width,
+                                            &height, &channels, 0);
+    ASSERT_NE(pixels, nullptr);
+    ASSERT_EQ((ImageSize{height, width}), kLarge);
+    ASSERT_EQ(channels, 3);
+    for (std::size_t i = 0; i < image.colour.size(); ++i) {
+        for (int channel = 0; channel < 3; ++channel) {
+            ASSERT_EQ(pixels[3 * i + static_cast<std::size_t>(channel)],
+                      srgb_byte(image.colour[i][channel]))
+                << i;
+        }
+    }
+    stbi_image_free(pixels);
+}
+
+// One row may be more than a band.
+TEST_F(ImageFiles, WidePngIsReadBack) {
+    Image image = make_image({3, 100'000});
+    image.colour[299'999] = glm::vec3(1.0f);
+    const std::vector<std::uint8_t> bytes = png_bytes(image);
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    stbi_uc* pixels = stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width,
+                                            &height, &channels, 0);
+    ASSERT_NE(pixels, nullptr);
+    EXPECT_EQ((ImageSize{height, width}), image.size);
+    EXPECT_EQ(pixels[899'999], 255);
+    EXPECT_EQ(pixels[899'996], 0);
+    stbi_image_free(pixels);
 }
 
 TEST_F(ImageFiles, PngIsReadBack) {

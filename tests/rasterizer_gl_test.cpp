@@ -341,6 +341,32 @@ TEST_F(RasterizerTest, CoplanarFacesOfDifferentShapes) {
     }
 }
 
+TEST_F(RasterizerTest, ColourAloneIsThatOfTheImage) {
+    use(mixed_scene());
+    const Image image = draw(look({0.5, 1.5, 6.0}, {0.2, 0.2, 0.1}));
+    const Image colour = rasterizer_->read_colour();
+    EXPECT_EQ(colour.size, image.size);
+    EXPECT_EQ(colour.colour, image.colour);
+    EXPECT_TRUE(colour.depth.empty());
+}
+
+TEST_F(RasterizerTest, WarmingUpLeavesNoTrace) {
+    use(mixed_scene());
+    const Camera camera = look({0.5, 1.5, 6.0}, {0.2, 0.2, 0.1});
+    const Image image = draw(camera);
+    for (const ImageSize size : {kSize, ImageSize{3, 7}}) {
+        rasterizer_ = std::make_unique<Rasterizer>();
+        rasterizer_->warm_up(size);
+        EXPECT_THROW(rasterizer_->draw(camera, kSize), Error) << "there is no scene yet";
+        const Image again = draw(camera);
+        EXPECT_EQ(again.colour, image.colour);
+        EXPECT_EQ(again.object, image.object);
+        EXPECT_EQ(again.primitive, image.primitive);
+        EXPECT_EQ(again.depth, image.depth);
+        EXPECT_EQ(again.normal, image.normal);
+    }
+}
+
 TEST_F(RasterizerTest, DroppingTheTieRuleChangesOnlyTies) {
     use(mixed_scene());
     const Camera camera = look({0.5, 1.5, 6.0}, {0.2, 0.2, 0.1});

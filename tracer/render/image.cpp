@@ -51,6 +51,10 @@ std::uint8_t srgb_byte(float linear) {
     return static_cast<std::uint8_t>(std::lround(255.0f * srgb_from_linear(linear)));
 }
 
+bool is_png_name(const std::filesystem::path& file) {
+    return lower_extension(file) == ".png";
+}
+
 std::string unsupported_image_name(const std::filesystem::path& file) {
     const std::string extension = lower_extension(file);
     if (extension == ".png" || extension == ".exr") return "";
@@ -59,7 +63,7 @@ std::string unsupported_image_name(const std::filesystem::path& file) {
 
 std::string unsupported_image(const std::filesystem::path& file, ImageSize size) {
     std::string problem = unsupported_image_name(file);
-    if (problem.empty() && lower_extension(file) == ".png" && !fits_png(size)) {
+    if (problem.empty() && is_png_name(file) && !fits_png(size)) {
         problem = "too large for a PNG: write .exr instead";
     }
     return problem;
@@ -73,7 +77,7 @@ void write_image(const Image& image, const std::filesystem::path& file) {
         throw FileError(file.string(), "can't be written: the image has no pixels");
     }
     TemporaryFile temporary(file);
-    if (lower_extension(file) == ".png") {
+    if (is_png_name(file)) {
         write_png_file(image, temporary.path(), file);
     } else {
         write_exr_file(image, temporary.path(), file);

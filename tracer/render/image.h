@@ -35,6 +35,8 @@ std::uint8_t srgb_byte(float linear);
 // unsigned-integer object_id, primitive_id). Written beside the target and renamed, so that a
 // failure leaves no half file. Throws FileError.
 void write_image(const Image& image, const std::filesystem::path& file);
+// True if write_image makes a PNG of it.
+bool is_png_name(const std::filesystem::path& file);
 // "" if write_image can write to that name, else what is wrong with it.
 std::string unsupported_image_name(const std::filesystem::path& file);
 // The same for an image of this size: a PNG holds up to 1 GiB of uncompressed bytes.

@@ -4,17 +4,18 @@
 #include "viewer/cli/interrupt.h"
 #include "viewer/cli/open_scene.h"
 #include "viewer/cli/progress_bar.h"
+#include "viewer/cli/raster_start.h"
 #include "viewer/cli/render_output.h"
 #include "viewer/cli/scene_report.h"
 #include "viewer/cli/standard_output.h"
-#include "viewer/headless/offscreen_context.h"
-#include "viewer/raster/rasterizer.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <future>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -71,17 +72,23 @@ Frame traced(const RenderCommand& command, const OpenedScene& opened, const Came
     return frame;
 }
 
-Frame rasterized(const RenderCommand& command, const OpenedScene& opened, const Camera& camera) {
-    const OffscreenContext context;
+// PNG holds colour alone, of all that an image has.
+bool writes_png(const RenderCommand& command) {
+    return command.output == "-" || is_png_name(command.output);
+}
+
+Frame rasterized(const RenderCommand& command, const OpenedScene& opened, const Camera& camera,
+                 RasterStart& raster) {
+    const OffscreenContext& context = raster.context();
     if (command.scene.verbose) print_message("OpenGL: " + context.description());
     const auto start = Clock::now();
-    Rasterizer rasterizer;
+    Rasterizer& rasterizer = raster.rasterizer();
     rasterizer.set_scene(opened.scene);
     for (const std::string& warning : rasterizer.warnings())
         print_message("warning: " + warning);
     rasterizer.draw(camera, command.size);
     Frame frame;
-    frame.image = rasterizer.read_image();
+    frame.image = writes_png(command) ? rasterizer.read_colour() : rasterizer.read_image();
     frame.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     return frame;
 }
@@ -128,21 +135,32 @@ Json stats_json(const RenderCommand& command, const OpenedScene& opened, const F
     return json;
 }
 
+// Loads, and makes OpenGL ready at the same time if it is going to draw.
+OpenedScene load(const RenderCommand& command, const Interrupt& interrupt,
+                 std::optional<RasterStart>& raster) {
+    if (!command.raster) return load_timed(command.scene, interrupt.token());
+    std::future<OpenedScene> loading = std::async(
+        std::launch::async, [&] { return load_timed(command.scene, interrupt.token()); });
+    raster.emplace(command.size);
+    return loading.get();
+}
+
 Frame make_frame(const RenderCommand& command, const OpenedScene& opened,
-                 const Interrupt& interrupt, ProgressBar& bar) {
+                 const Interrupt& interrupt, ProgressBar& bar, std::optional<RasterStart>& raster) {
     const Camera camera = camera_for(*opened.scene, command.size, command.camera);
-    return command.raster ? rasterized(command, opened, camera)
-                          : traced(command, opened, camera, interrupt, bar);
+    return raster ? rasterized(command, opened, camera, *raster)
+                  : traced(command, opened, camera, interrupt, bar);
 }
 
 void render_to(const RenderOutput& output, const RenderCommand& command,
                const Interrupt& interrupt) {
     ProgressBar bar;
     bar.show("loading");
-    const OpenedScene opened = load_timed(command.scene, interrupt.token());
+    std::optional<RasterStart> raster;
+    const OpenedScene opened = load(command, interrupt, raster);
     bar.clear();
     print_report(opened, command.scene);
-    const Frame frame = make_frame(command, opened, interrupt, bar);
+    const Frame frame = make_frame(command, opened, interrupt, bar, raster);
     bar.clear();
     interrupt.check();
     output.write(frame.image);

@@ -29,26 +29,37 @@ void check_size(ImageSize size) {
 
 }  // namespace
 
-FrameBuffers::FrameBuffers(ImageSize image_size, bool with_textures)
-    : size(image_size), textured(with_textures) {
+FrameBuffers::FrameBuffers(ImageSize image_size, bool with_textures) : size(image_size) {
     check_size(size);
     normal_t = make_texture(kRgba32f, size);
     object = make_texture(kR32ui, size);
     primitive = make_texture(kR32ui, size);
     material = make_texture(kR32ui, size);
-    if (textured) {
-        uv = make_texture(kRg32f, size);
-        footprint = make_texture(kRgba32f, size);
-    }
     depth_stencil = make_texture(kDepth32fStencil8, size);
     colour_t = make_texture(kRgba32f, size);
     check_gl("making the frame's buffers");
     depth = make_framebuffer({}, depth_stencil.name());
-    std::vector<GLuint> surfaces{normal_t.name(), object.name(), primitive.name(), material.name()};
-    if (textured) surfaces.insert(surfaces.end(), {uv.name(), footprint.name()});
-    surface = make_framebuffer(surfaces, depth_stencil.name());
     const GLuint colours[] = {colour_t.name()};
     colour = make_framebuffer(colours);
+    if (with_textures) {
+        add_texture_targets();
+    } else {
+        surface = surface_framebuffer();
+    }
+}
+
+void FrameBuffers::add_texture_targets() {
+    textured = true;
+    uv = make_texture(kRg32f, size);
+    footprint = make_texture(kRgba32f, size);
+    check_gl("making the frame's buffers");
+    surface = surface_framebuffer();
+}
+
+Framebuffer FrameBuffers::surface_framebuffer() const {
+    std::vector<GLuint> targets{normal_t.name(), object.name(), primitive.name(), material.name()};
+    if (textured) targets.insert(targets.end(), {uv.name(), footprint.name()});
+    return make_framebuffer(targets, depth_stencil.name());
 }
 
 void FrameBuffers::clear() const {

@@ -13,6 +13,8 @@ struct FrameBuffers {
     // images of this size.
     FrameBuffers(ImageSize image_size, bool with_textures);
 
+    // What a frame without them lacks to be `textured`.
+    void add_texture_targets();
     // Makes every pixel background, ready for the passes. Leaves `surface` bound.
     void clear() const;
 
@@ -31,6 +33,9 @@ struct FrameBuffers {
     Framebuffer depth;    // first pass: depth alone
     Framebuffer surface;  // second pass: all of the above but colour
     Framebuffer colour;   // third pass
+
+private:
+    [[nodiscard]] Framebuffer surface_framebuffer() const;
 };
 
 }  // namespace raypick

@@ -14,6 +14,7 @@
 
 #include <cstdio>
 #include <initializer_list>
+#include <utility>
 
 namespace raypick {
 
@@ -36,12 +37,12 @@ void set_state() {
 }
 
 template <typename T>
-std::vector<T> read_texture(GLuint texture, ImageSize size, GLenum format, GLenum type) {
-    std::vector<T> texels(size.pixel_count());
+std::unique_ptr<T[]> read_texture(GLuint texture, ImageSize size, GLenum format, GLenum type) {
+    auto texels = std::make_unique_for_overwrite<T[]>(size.pixel_count());
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
     glPixelStorei(GL_PACK_ROW_LENGTH, 0);
     glBindTexture(GL_TEXTURE_2D, texture);
-    glGetTexImage(GL_TEXTURE_2D, 0, format, type, texels.data());
+    glGetTexImage(GL_TEXTURE_2D, 0, format, type, texels.get());
     glBindTexture(GL_TEXTURE_2D, 0);
     return texels;
 }
@@ -62,6 +63,8 @@ struct Rasterizer::State {
                       TieRule ties);
     void shade_pass(const GpuLights& lights);
     void bind_materials() const;
+    // All passes of a frame, into the lower left corner of the buffers.
+    void draw(const Camera& camera, ImageSize size, std::uint32_t mask, TieRule ties);
 };
 
 void Rasterizer::State::reload_changed_shaders() {
@@ -145,40 +148,65 @@ std::vector<std::string> Rasterizer::warnings() const {
     return warnings;
 }
 
-void Rasterizer::draw(const Camera& camera, ImageSize size, std::uint32_t mask, TieRule ties) {
-    if (state_->scene.scene == nullptr) throw Error("there is no scene to draw");
-    const KeepFramebuffer keep;
-    state_->reload_changed_shaders();
-    const bool textured = state_->scene.materials.any_textured();
-    if (state_->frame.size != size || state_->frame.textured != textured) {
-        state_->frame = FrameBuffers(size, textured);
-    }
+void Rasterizer::State::draw(const Camera& camera, ImageSize size, std::uint32_t mask,
+                             TieRule ties) {
     set_state();
     const ViewNumbers view = view_numbers(camera, size);
-    glBindBuffer(GL_UNIFORM_BUFFER, state_->view_block.name());
+    glBindBuffer(GL_UNIFORM_BUFFER, view_block.name());
     glBufferData(GL_UNIFORM_BUFFER, sizeof(ViewBlock), &view.block, GL_STREAM_DRAW);
-    glBindBufferBase(GL_UNIFORM_BUFFER, kViewBinding, state_->view_block.name());
+    glBindBufferBase(GL_UNIFORM_BUFFER, kViewBinding, view_block.name());
     std::vector<const DrawnObject*> objects;
-    for (const DrawnObject& object : state_->scene.objects) {
+    for (const DrawnObject& object : scene.objects) {
         if ((object.mask & mask) != 0 && may_be_seen(view, object.bounds)) {
             objects.push_back(&object);
         }
     }
     // Whatever makes a texture binds it to the active unit: before the units have what is drawn
     // with.
-    const GpuLights lights =
-        upload_lights(effective_lights(*state_->scene.scene, camera), view.eye);
+    const GpuLights lights = upload_lights(effective_lights(*scene.scene, camera), view.eye);
     glViewport(0, 0, size.cols, size.rows);
-    glBindVertexArray(state_->no_vertices.name());
-    state_->frame.clear();
-    state_->bind_materials();
-    if (ties == TieRule::kept) state_->depth_pass(view, objects);
-    state_->surface_pass(view, objects, ties);
-    state_->shade_pass(lights);
+    glBindVertexArray(no_vertices.name());
+    frame.clear();
+    bind_materials();
+    if (ties == TieRule::kept) depth_pass(view, objects);
+    surface_pass(view, objects, ties);
+    shade_pass(lights);
     glBindVertexArray(0);
     glUseProgram(0);
     glActiveTexture(GL_TEXTURE0);
     check_gl("drawing the scene");
+}
+
+void Rasterizer::warm_up(ImageSize size) {
+    const KeepFramebuffer keep;
+    auto scene = std::make_shared<Scene>();
+    MeshData data;
+    data.positions = {{0.0f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}};
+    data.normals.assign(3, glm::vec3(0.0f, 0.0f, 1.0f));
+    data.triangles = {glm::uvec3(0, 1, 2)};
+    Object object;
+    object.shape = MeshInstance{add_mesh(*scene, make_mesh("triangle", std::move(data)))};
+    add_object(*scene, std::move(object));
+    GpuScene before = std::exchange(state_->scene, upload_scene(scene, {}));
+    state_->frame = FrameBuffers(size, false);
+    Camera camera;
+    camera.eye = {0.2, 0.2, 1.0};
+    camera.at = {0.2, 0.2, 0.0};
+    state_->draw(camera, {1, 1}, 0xffffffffu, TieRule::kept);
+    state_->scene = std::move(before);
+}
+
+void Rasterizer::draw(const Camera& camera, ImageSize size, std::uint32_t mask, TieRule ties) {
+    if (state_->scene.scene == nullptr) throw Error("there is no scene to draw");
+    const KeepFramebuffer keep;
+    state_->reload_changed_shaders();
+    const bool textured = state_->scene.materials.any_textured();
+    if (state_->frame.size != size || (state_->frame.textured && !textured)) {
+        state_->frame = FrameBuffers(size, textured);
+    } else if (textured && !state_->frame.textured) {
+        state_->frame.add_texture_targets();
+    }
+    state_->draw(camera, size, mask, ties);
 }
 
 unsigned Rasterizer::colour_texture() const {
@@ -211,6 +239,21 @@ Image Rasterizer::read_image() const {
             image.object[to] = object[from];
             image.primitive[to] = primitive[from];
         }
+    }
+    return image;
+}
+
+Image Rasterizer::read_colour() const {
+    const FrameBuffers& frame = state_->frame;
+    const auto colour_t =
+        read_texture<glm::vec4>(frame.colour_t.name(), frame.size, GL_RGBA, GL_FLOAT);
+    check_gl("reading the frame");
+    Image image;
+    image.size = frame.size;
+    image.colour.reserve(frame.size.pixel_count());
+    for (int row = 0; row < frame.size.rows; ++row) {
+        const glm::vec4* from = &colour_t[frame.size.index({gl_row(frame.size, row), 0})];
+        image.colour.insert(image.colour.end(), from, from + frame.size.cols);
     }
     return image;
 }

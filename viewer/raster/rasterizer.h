@@ -31,6 +31,10 @@ public:
     // What of the scene is shown coarser than it is, because this OpenGL can't hold all of it.
     [[nodiscard]] std::vector<std::string> warnings() const;
 
+    // Does ahead of time, and without a scene, what draw() would do the first time for meshes
+    // without textures in frames of this size: buffers, programs, their machine code.
+    void warm_up(ImageSize size);
+
     // Draws a frame of the scene into this object's own buffers. Only objects with
     // (object.mask & mask) != 0 are drawn. camera.near clips; far is infinite.
     void draw(const Camera& camera, ImageSize size, std::uint32_t mask = 0xffffffffu,
@@ -43,6 +47,8 @@ public:
 
     // The last frame, read back: colour, depth (t), normal, object and primitive; row 0 on top.
     [[nodiscard]] Image read_image() const;
+    // Its colour alone, which is all that a PNG shows: the other channels stay empty.
+    [[nodiscard]] Image read_colour() const;
 
 private:
     struct State;
