@@ -6,24 +6,27 @@ uniform vec3 zenith;      // kGradientSky, also the next two
 uniform vec3 horizon;
 uniform vec3 ground;
 uniform vec3 sky_up;             // unit; with the next two an orthonormal frame
-uniform vec3 sky_right;          // kImageSky, also all that follows
+#ifdef IMAGE_SKY                 // all that follows: software OpenGL runs every branch of an if
+uniform vec3 sky_right;          // kImageSky
 uniform vec3 sky_forward;
 uniform float sky_scale;
 uniform ivec2 sky_size;          // columns and rows of the finest level
 uniform int sky_levels;
 uniform samplerBuffer sky_texels;  // all levels, the finest first
+#endif
 
 const int kConstantSky = 0;
 const int kGradientSky = 1;
 const int kImageSky = 2;
 
-const float kPi = 3.14159265358979;
-const int kMaxSkyTaps = 16;
-
 vec3 gradient(vec3 direction) {
     float height = dot(direction, sky_up);
     return mix(horizon, height < 0.0 ? ground : zenith, min(1.0, abs(height)));
 }
+
+#ifdef IMAGE_SKY
+const float kPi = 3.14159265358979;
+const int kMaxSkyTaps = 16;
 
 struct SkyLevel {
     ivec2 size;
@@ -100,10 +103,13 @@ vec3 image_sky(vec3 direction, float spread) {
     vec2 uv = vec2(0.5 + atan(x, z) / (2.0 * kPi), atan(cos_height, y) / kPi);
     return sky_scale * sky_average(uv, spread, cos_height);
 }
+#endif
 
 // Linear RGB along a unit direction; images are averaged over the angle `spread`.
 vec3 environment_colour(vec3 direction, float spread) {
     if (sky_kind == kGradientSky) return gradient(direction);
+#ifdef IMAGE_SKY
     if (sky_kind == kImageSky) return image_sky(direction, spread);
+#endif
     return background;
 }

@@ -18,6 +18,9 @@ float falloff(vec3 attenuation, float d) {
     return 1.0 / (attenuation.x + d * (attenuation.y + d * attenuation.z));
 }
 
+// Without SHAPED_LIGHTS there are point and directional lights only, and the rest is left out:
+// software OpenGL runs every branch of an if.
+#ifdef SHAPED_LIGHTS
 // How much of a spot's light leaves against `to_light`, a unit direction. With equal angles the
 // edge is sharp.
 float spot_share(int first, vec3 to_light) {
@@ -74,6 +77,7 @@ vec3 sample_offset(int first, int kind, vec3 offset, int i, int samples, float r
     }
     return offset;
 }
+#endif
 
 // What one light makes the surface at `point` give off towards the eye.
 vec3 from_light(Material m, vec3 normal, vec3 point, vec3 to_eye, int first) {
@@ -81,19 +85,27 @@ vec3 from_light(Material m, vec3 normal, vec3 point, vec3 to_eye, int first) {
     vec4 colour_samples = texelFetch(lights, first + 1);
     vec4 attenuation_radius = texelFetch(lights, first + 2);
     int kind = int(place_kind.w);
+#ifdef SHAPED_LIGHTS
     int samples = max(int(colour_samples.w), 1);
+#else
+    const int samples = 1;
+#endif
     vec3 sum = vec3(0.0);
     for (int i = 0; i < samples * samples; ++i) {
         vec3 to_light = place_kind.xyz;
         float share = 1.0;
         if (kind != kDirectionalLight) {
-            vec3 offset = sample_offset(first, kind, place_kind.xyz - point, i, samples,
-                                        attenuation_radius.w);
+            vec3 offset = place_kind.xyz - point;
+#ifdef SHAPED_LIGHTS
+            offset = sample_offset(first, kind, offset, i, samples, attenuation_radius.w);
+#endif
             float d = length(offset);
             if (!(d > 0.0)) continue;
             to_light = offset / d;
             share = falloff(attenuation_radius.xyz, d);
+#ifdef SHAPED_LIGHTS
             if (kind == kSpotLight) share *= spot_share(first, to_light);
+#endif
         }
         sum += share * local_light(m, normal, to_light, to_eye);
     }

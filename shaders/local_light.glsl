@@ -16,16 +16,16 @@ float lobe_power(float lobe, float shininess) {
     return lobe > 0.0 ? pow(min(lobe, 1.0), shininess) : 0.0;
 }
 
-// (R.V)^shininess with R the mirrored direction to the light.
-float phong_highlight(float shininess, vec3 normal, float n_dot_l, vec3 to_light, vec3 to_eye) {
-    return lobe_power(dot(2.0 * n_dot_l * normal - to_light, to_eye), shininess);
+// R.V, with R the mirrored direction to the light.
+float phong_lobe(vec3 normal, float n_dot_l, vec3 to_light, vec3 to_eye) {
+    return dot(2.0 * n_dot_l * normal - to_light, to_eye);
 }
 
-// (N.H)^shininess with H halfway between light and eye.
-float blinn_phong_highlight(float shininess, vec3 normal, vec3 to_light, vec3 to_eye) {
+// N.H, with H halfway between light and eye.
+float blinn_phong_lobe(vec3 normal, vec3 to_light, vec3 to_eye) {
     vec3 halfway = to_light + to_eye;
     float size = length(halfway);
-    return size > 0.0 ? lobe_power(dot(normal, halfway / size), shininess) : 0.0;
+    return size > 0.0 ? dot(normal, halfway / size) : 0.0;
 }
 
 // Diffuse and specular terms for a light of colour 1; 0 if it shines from behind. All directions
@@ -33,8 +33,7 @@ float blinn_phong_highlight(float shininess, vec3 normal, vec3 to_light, vec3 to
 vec3 local_light(Material m, vec3 normal, vec3 to_light, vec3 to_eye) {
     float n_dot_l = dot(normal, to_light);
     if (!(n_dot_l > 0.0)) return vec3(0.0);
-    float highlight =
-        m.blinn ? blinn_phong_highlight(m.shininess, normal, to_light, to_eye)
-                : phong_highlight(m.shininess, normal, n_dot_l, to_light, to_eye);
-    return m.diffuse * n_dot_l + m.specular * highlight;
+    float lobe = m.blinn ? blinn_phong_lobe(normal, to_light, to_eye)
+                         : phong_lobe(normal, n_dot_l, to_light, to_eye);
+    return m.diffuse * n_dot_l + m.specular * lobe_power(lobe, m.shininess);
 }

@@ -6,6 +6,7 @@
 #include <glm/trigonometric.hpp>
 #include <glm/vec4.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -70,6 +71,10 @@ GpuLights upload_lights(const std::vector<Light>& lights, const glm::dvec3& eye)
         std::visit(TexelsOf{eye, added}, light);
     }
     GpuLights gpu;
+    gpu.shaped = std::any_of(lights.begin(), lights.end(), [](const Light& light) {
+        return !std::holds_alternative<PointLight>(light) &&
+               !std::holds_alternative<DirectionalLight>(light);
+    });
     gpu.count = static_cast<int>(lights.size());
     gpu.texels = {GL_RGBA32F, sizeof(glm::vec4), std::as_bytes(std::span(texels)), "lights"};
     return gpu;

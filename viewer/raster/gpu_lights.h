@@ -20,6 +20,7 @@ namespace raypick {
 struct GpuLights {
     BufferTexture texels;
     int count = 0;
+    bool shaped = false;  // some are neither points nor directional
 };
 GpuLights upload_lights(const std::vector<Light>& lights, const glm::dvec3& eye);
 

@@ -122,7 +122,9 @@ void Rasterizer::State::shade_pass(const GpuLights& lights) {
     }
     bind(Unit::lights, GL_TEXTURE_BUFFER, lights.texels.texture());
     bind(Unit::sky_texels, GL_TEXTURE_BUFFER, scene.sky->texels.texture());
-    const Uniforms uniforms(shaders.shade(frame.textured));
+    const ShadeKind kind{frame.textured, std::holds_alternative<ImageSky>(scene.scene->environment),
+                         lights.shaped};
+    const Uniforms uniforms(shaders.shade(kind));
     uniforms.set("material_count", scene.materials.count());
     uniforms.set("light_count", lights.count);
     uniforms.set("ambient", scene.scene->ambient);

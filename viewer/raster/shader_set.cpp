@@ -61,12 +61,22 @@ Program shape_program(const ShapeShader& shape, const char* fragment_file, bool 
     return program;
 }
 
-Program shade_program(bool textured) {
+Program shade_program(const ShadeKind& kind) {
     std::vector<std::string> defines;
-    if (textured) defines.emplace_back("TEXTURED");
+    if (kind.textured) defines.emplace_back("TEXTURED");
+    if (kind.image_sky) defines.emplace_back("IMAGE_SKY");
+    if (kind.shaped_lights) defines.emplace_back("SHAPED_LIGHTS");
     Program program = make_program("fullscreen.vert", "shade.frag", defines);
     bind_inputs(program);
     return program;
+}
+
+std::size_t number_of(const ShadeKind& kind) {
+    return (kind.textured ? 1u : 0u) + (kind.image_sky ? 2u : 0u) + (kind.shaped_lights ? 4u : 0u);
+}
+
+ShadeKind shade_kind(std::size_t number) {
+    return {(number & 1u) != 0, (number & 2u) != 0, (number & 4u) != 0};
 }
 
 constexpr const char* kFragmentFiles[] = {"depth.frag", "surface.frag"};  // by Pass
@@ -74,7 +84,7 @@ constexpr const char* kFragmentFiles[] = {"depth.frag", "surface.frag"};  // by 
 }  // namespace
 
 ShaderSet::ShaderSet() {
-    shade(false);
+    shade({});
 }
 
 const Program& ShaderSet::shape(Pass pass, std::size_t kind, bool textured) {
@@ -84,15 +94,17 @@ const Program& ShaderSet::shape(Pass pass, std::size_t kind, bool textured) {
     return program;
 }
 
-const Program& ShaderSet::shade(bool textured) {
-    Program& program = shade_[textured ? 1 : 0];
-    if (!program) program = shade_program(textured);
+const Program& ShaderSet::shade(const ShadeKind& kind) {
+    Program& program = shade_[number_of(kind)];
+    if (!program) program = shade_program(kind);
     return program;
 }
 
 ShaderSet ShaderSet::again() const {
     ShaderSet fresh;
-    if (shade_[1]) fresh.shade(true);
+    for (std::size_t i = 0; i < shade_.size(); ++i) {
+        if (shade_[i]) fresh.shade(shade_kind(i));
+    }
     for (std::size_t kind = 0; kind < kShapeKinds; ++kind) {
         for (std::size_t i = 0; i < kVariants; ++i) {
             if (shapes_[kind][i]) fresh.shape(static_cast<Pass>(i / 2), kind, i % 2 != 0);

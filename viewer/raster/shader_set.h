@@ -15,6 +15,13 @@ inline constexpr std::size_t kShapeKinds = 10;
 // Which pass a shape's program is for.
 enum class Pass : std::size_t { depth, surface };
 
+// What the third pass's program must know.
+struct ShadeKind {
+    bool textured = false;       // the frame has texture coordinates
+    bool image_sky = false;      // the surroundings are an image
+    bool shaped_lights = false;  // some light is neither a point nor directional
+};
+
 // Programs of the first two passes are compiled when they are first asked for: scenes need few.
 class ShaderSet {
 public:
@@ -23,8 +30,7 @@ public:
 
     // `kind` is the index of the DrawnShape; `textured` programs compute texture coordinates.
     const Program& shape(Pass pass, std::size_t kind, bool textured);
-    // The third pass; `textured` for a frame that has texture coordinates.
-    const Program& shade(bool textured);
+    const Program& shade(const ShadeKind& kind);
 
     // The same programs, compiled again.
     [[nodiscard]] ShaderSet again() const;
@@ -33,7 +39,7 @@ private:
     static constexpr std::size_t kVariants = 4;  // two passes, plain and textured
 
     std::array<std::array<Program, kVariants>, kShapeKinds> shapes_;  // 0: not asked for yet
-    std::array<Program, 2> shade_;                                    // plain and textured
+    std::array<Program, 8> shade_;                                    // a bit for each flag
 };
 
 // Texture units and uniform buffer binding points of these programs.
