@@ -4,6 +4,11 @@
 #include "ray.glsl"
 #include "surface.glsl"
 #ifdef TEXTURED
+// A file is included once: what the next ones share, not within the branch of one.
+#include "materials.glsl"
+#include "maps.glsl"
+#endif
+#ifdef CUT_OUT
 #include "cut_out.glsl"
 #endif
 
@@ -11,7 +16,7 @@
 bool is_there(inout Surface s) {
     if (sides != 0 && (sides == 1) != s.front) return false;
     if (object_material != kNoMaterial) s.material = object_material;
-#ifdef TEXTURED
+#ifdef CUT_OUT
     if (cut_out(s)) return false;
 #endif
     return true;

@@ -1,7 +1,7 @@
 // Second pass, objects and primitives in ascending order: the first one that comes within the tie
 // gap of the closest surface keeps the pixel (the stencil sees to "first").
 #include "shape.glsl"
-#ifdef TEXTURED
+#ifdef NORMAL_MAP
 #include "normal_map.glsl"
 #endif
 
@@ -26,7 +26,9 @@ void main() {
 #ifdef TEXTURED
     Footprint covered =
         footprint(unit(s.geometric), s.dpdu, s.dpdv, ray.direction, cone_width(s.t));
+#ifdef NORMAL_MAP
     normal = mapped_normal(s, normal, covered);
+#endif
     uv = s.uv;
     footprint_axes = vec4(covered.major, covered.minor);
 #endif

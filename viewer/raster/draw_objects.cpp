@@ -49,7 +49,7 @@ struct ShapeDraw {
             plane_numbers(view, plane, object.scene_from_object, object.object_from_scene);
         uniforms.set("plane_normal", numbers.normal);
         uniforms.set("plane_height", numbers.height);
-        if (object.textured) {
+        if (object.look.textured) {
             uniforms.set("plane_uv", numbers.uv);
             uniforms.set("plane_u", numbers.u);
             uniforms.set("plane_v", numbers.v);
@@ -101,7 +101,7 @@ private:
     // The space that the shape's shader works in.
     void set_space(const glm::dmat3& object_from_scene) const {
         uniforms.set("object_from_scene", glm::mat3(object_from_scene));
-        if (!object.textured) return;
+        if (!object.look.textured) return;
         uniforms.set("scene_from_object", glm::mat3(glm::inverse(object_from_scene)));
     }
 
@@ -147,7 +147,7 @@ void bind(Unit unit, GLenum target, GLuint texture) {
 void draw_objects(ShaderSet& shaders, Pass pass, const ViewNumbers& view,
                   std::span<const DrawnObject* const> objects, int material_count) {
     for (const DrawnObject* object : objects) {
-        const Uniforms uniforms(shaders.shape(pass, object->shape.index(), object->textured));
+        const Uniforms uniforms(shaders.shape(pass, object->shape.index(), object->look));
         uniforms.set("object_id", object->id);
         uniforms.set("object_material", object->material);
         uniforms.set("sides", static_cast<int>(object->sides));

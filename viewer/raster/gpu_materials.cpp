@@ -52,10 +52,15 @@ BufferTexture upload(const std::vector<glm::vec4>& texels, const char* what) {
 
 }  // namespace
 
-bool is_textured(const Material& material) {
+SurfaceLook surface_look(const Material& material) {
     const auto present = [](const TextureMap& map) { return static_cast<bool>(map); };
-    return std::any_of(material.maps.begin(), material.maps.end(), present) ||
-           material.opacity < vanishing_opacity(material);
+    SurfaceLook look;
+    look.cut_out =
+        present(material.map(MapSlot::opacity)) || material.opacity < vanishing_opacity(material);
+    look.normal_map = present(material.map(MapSlot::normal));
+    look.textured =
+        look.cut_out || std::any_of(material.maps.begin(), material.maps.end(), present);
+    return look;
 }
 
 GpuMaterials upload_materials(const Scene& scene) {
@@ -64,10 +69,10 @@ GpuMaterials upload_materials(const Scene& scene) {
     std::vector<glm::vec4> maps;
     int blocks = 0;
     for (const Material& m : scene.materials) {
-        const bool textured = is_textured(m);
-        add_material(materials, m, textured ? blocks++ : -1);
-        if (textured) add_block(maps, m);
-        gpu.textured.push_back(textured);
+        const SurfaceLook look = surface_look(m);
+        add_material(materials, m, look.textured ? blocks++ : -1);
+        if (look.textured) add_block(maps, m);
+        gpu.looks.push_back(look);
     }
     add_material(materials, material(scene, kNoMaterial), -1);
     gpu.materials = upload(materials, "materials");

@@ -9,9 +9,20 @@
 
 namespace raypick {
 
-// Whether a material's look changes over a surface, or whether it is cut out: its objects are drawn
-// by the programs that know textures.
-bool is_textured(const Material& material);
+// What the programs that draw a surface must know of its materials.
+struct SurfaceLook {
+    bool textured = false;  // the look changes over the surface, or it has holes
+    bool cut_out = false;   // it has holes
+    bool normal_map = false;
+
+    SurfaceLook& operator|=(const SurfaceLook& other) {
+        textured |= other.textured;
+        cut_out |= other.cut_out;
+        normal_map |= other.normal_map;
+        return *this;
+    }
+};
+SurfaceLook surface_look(const Material& material);
 
 // Read by shaders/material.glsl.
 struct GpuMaterials {
@@ -23,16 +34,17 @@ struct GpuMaterials {
     //   opacity, the opacity below which there is no surface, 1 if blended, bit s: has map s
     //   then for each slot: u_row, texture;   v_row, modes (map_modes);   base, gain
     BufferTexture maps;
-    std::vector<bool> textured;  // by material id
+    std::vector<SurfaceLook> looks;  // by material id
 
     // Without the default.
-    [[nodiscard]] int count() const { return static_cast<int>(textured.size()); }
+    [[nodiscard]] int count() const { return static_cast<int>(looks.size()); }
     // Of a material of the scene or kNoMaterial.
-    [[nodiscard]] bool is_textured(MaterialId id) const {
-        return id < textured.size() && textured[id];
+    [[nodiscard]] SurfaceLook look(MaterialId id) const {
+        return id < looks.size() ? looks[id] : SurfaceLook{};
     }
     [[nodiscard]] bool any_textured() const {
-        return std::find(textured.begin(), textured.end(), true) != textured.end();
+        return std::any_of(looks.begin(), looks.end(),
+                           [](const SurfaceLook& look) { return look.textured; });
     }
 };
 

@@ -52,12 +52,12 @@ bool is_empty(const GpuScene& gpu, const Shape& shape) {
     return cones != nullptr && gpu.cone_sets[cones->set]->chunks.empty();
 }
 
-bool is_textured(const GpuScene& gpu, const Object& object) {
-    if (object.material != kNoMaterial) return gpu.materials.is_textured(object.material);
-    const std::span<const Part> parts = parts_of(*gpu.scene, object.shape);
-    return std::any_of(parts.begin(), parts.end(), [&gpu](const Part& part) {
-        return gpu.materials.is_textured(part.material);
-    });
+SurfaceLook look_of(const GpuScene& gpu, const Object& object) {
+    if (object.material != kNoMaterial) return gpu.materials.look(object.material);
+    SurfaceLook look;
+    for (const Part& part : parts_of(*gpu.scene, object.shape))
+        look |= gpu.materials.look(part.material);
+    return look;
 }
 
 // Corners relative to the first one, which keeps them exact far from the origin.
@@ -132,7 +132,7 @@ DrawnObject drawn_object(const GpuScene& gpu, const Object& object) {
     drawn.mask = object.mask;
     drawn.material = object.material;
     drawn.sides = object.sides;
-    drawn.textured = is_textured(gpu, object);
+    drawn.look = look_of(gpu, object);
     drawn.scene_from_object = object.world_from_object;
     drawn.object_from_scene = inverse_of(object, object.world_from_object);
     std::visit(ShapeDrawing{*gpu.scene, object, gpu, drawn}, object.shape);

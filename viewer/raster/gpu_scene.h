@@ -26,7 +26,7 @@ struct DrawnObject {
     std::uint32_t mask = 0;
     MaterialId material = kNoMaterial;
     Sides sides = Sides::both;
-    bool textured = false;  // its look or its holes depend on texture coordinates
+    SurfaceLook look;
     DrawnShape shape;
     Transform scene_from_object;
     Transform object_from_scene;

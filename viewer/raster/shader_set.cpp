@@ -53,9 +53,12 @@ constexpr ShapeShader kShapes[kShapeKinds] = {{"mesh.vert", "SHAPE_MESH"},
                                               {"sphere_set.vert", "SHAPE_SPHERE_SET"},
                                               {"cone_set.vert", "SHAPE_CONE_SET"}};
 
-Program shape_program(const ShapeShader& shape, const char* fragment_file, bool textured) {
+Program shape_program(const ShapeShader& shape, const char* fragment_file,
+                      const SurfaceLook& look) {
     std::vector<std::string> defines = {shape.define};
-    if (textured) defines.emplace_back("TEXTURED");
+    if (look.textured) defines.emplace_back("TEXTURED");
+    if (look.cut_out) defines.emplace_back("CUT_OUT");
+    if (look.normal_map) defines.emplace_back("NORMAL_MAP");
     Program program = make_program(shape.vertex_file, fragment_file, defines);
     bind_inputs(program);
     return program;
@@ -79,6 +82,20 @@ ShadeKind shade_kind(std::size_t number) {
     return {(number & 1u) != 0, (number & 2u) != 0, (number & 4u) != 0};
 }
 
+std::size_t number_of(const SurfaceLook& look) {
+    return (look.textured ? 1u : 0u) + (look.cut_out ? 2u : 0u) + (look.normal_map ? 4u : 0u);
+}
+
+SurfaceLook surface_look(std::size_t number) {
+    return {(number & 1u) != 0, (number & 2u) != 0, (number & 4u) != 0};
+}
+
+// Where there are no holes, how far away a surface is doesn't depend on its look.
+SurfaceLook look_in(Pass pass, const SurfaceLook& look) {
+    if (pass == Pass::surface) return look;
+    return {look.cut_out, look.cut_out, false};
+}
+
 constexpr const char* kFragmentFiles[] = {"depth.frag", "surface.frag"};  // by Pass
 
 }  // namespace
@@ -87,10 +104,11 @@ ShaderSet::ShaderSet() {
     shade({});
 }
 
-const Program& ShaderSet::shape(Pass pass, std::size_t kind, bool textured) {
+const Program& ShaderSet::shape(Pass pass, std::size_t kind, const SurfaceLook& look) {
     const auto file = static_cast<std::size_t>(pass);
-    Program& program = shapes_[kind][2 * file + (textured ? 1 : 0)];
-    if (!program) program = shape_program(kShapes[kind], kFragmentFiles[file], textured);
+    const SurfaceLook needed = look_in(pass, look);
+    Program& program = shapes_[kind][kVariants / 2 * file + number_of(needed)];
+    if (!program) program = shape_program(kShapes[kind], kFragmentFiles[file], needed);
     return program;
 }
 
@@ -107,7 +125,9 @@ ShaderSet ShaderSet::again() const {
     }
     for (std::size_t kind = 0; kind < kShapeKinds; ++kind) {
         for (std::size_t i = 0; i < kVariants; ++i) {
-            if (shapes_[kind][i]) fresh.shape(static_cast<Pass>(i / 2), kind, i % 2 != 0);
+            if (!shapes_[kind][i]) continue;
+            const auto pass = static_cast<Pass>(i / (kVariants / 2));
+            fresh.shape(pass, kind, surface_look(i % (kVariants / 2)));
         }
     }
     return fresh;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "viewer/gl/program.h"
+#include "viewer/raster/gpu_materials.h"
 
 #include <array>
 #include <filesystem>
@@ -28,15 +29,15 @@ public:
     // Throws Error with the compiler's message, as shape() does.
     ShaderSet();
 
-    // `kind` is the index of the DrawnShape; `textured` programs compute texture coordinates.
-    const Program& shape(Pass pass, std::size_t kind, bool textured);
+    // `kind` is the index of the DrawnShape.
+    const Program& shape(Pass pass, std::size_t kind, const SurfaceLook& look);
     const Program& shade(const ShadeKind& kind);
 
     // The same programs, compiled again.
     [[nodiscard]] ShaderSet again() const;
 
 private:
-    static constexpr std::size_t kVariants = 4;  // two passes, plain and textured
+    static constexpr std::size_t kVariants = 16;  // two passes, a bit for each of a look's flags
 
     std::array<std::array<Program, kVariants>, kShapeKinds> shapes_;  // 0: not asked for yet
     std::array<Program, 8> shade_;                                    // a bit for each flag
