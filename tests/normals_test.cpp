@@ -1,6 +1,8 @@
 // Shading normals by the crease angle.
 #include "tracer/scene/normals.h"
 
+#include "tests/random.h"
+
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
@@ -233,6 +235,38 @@ TEST(CreaseNormals, CrowdedPointsAndEdgesTakeNoQuadraticTime) {
     const MeshData smooth = with_crease_normals(data, 30.0);
     EXPECT_EQ(smooth.triangles.size(), 2u * kFaces);
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+}
+
+// Several blocks of points, with creases, uvs, points without triangles and degenerate triangles in
+// all of them.
+MeshData many_blocks() {
+    MeshData data = sphere(120, true);
+    Random random(3);
+    for (const glm::vec3& p : data.positions)
+        data.uvs.emplace_back(std::round(4.0f * p.x), std::round(4.0f * p.y));
+    for (std::size_t i = 0; i < data.triangles.size(); i += 37) {
+        const std::uint32_t corner = data.triangles[i].x;
+        data.triangles[i].y = corner;  // degenerate
+    }
+    for (std::size_t i = 0; i < 50; ++i)  // at points of their own
+        data.triangles.emplace_back(glm::uvec3(static_cast<std::uint32_t>(data.positions.size())));
+    data.positions.emplace_back(9.0f, 9.0f, 9.0f);
+    data.uvs.emplace_back(0.0f);
+    for (std::size_t i = 0; i < data.positions.size(); i += 11)  // creases
+        data.positions[i] *= static_cast<float>(random.between(0.97, 1.03));
+    return data;
+}
+
+TEST(CreaseNormals, AnyNumberOfThreadsGivesTheSame) {
+    const MeshData one = with_crease_normals(many_blocks(), 30.0, 1);
+    EXPECT_GT(one.positions.size(), 3u * 4096u);
+    for (const int threads : {2, 3, 8}) {
+        const MeshData many = with_crease_normals(many_blocks(), 30.0, threads);
+        EXPECT_EQ(many.positions, one.positions) << threads;
+        EXPECT_EQ(many.normals, one.normals) << threads;
+        EXPECT_EQ(many.uvs, one.uvs) << threads;
+        EXPECT_EQ(many.triangles, one.triangles) << threads;
+    }
 }
 
 }  // namespace
