@@ -3,348 +3,286 @@
 #include "tracer/error.h"
 #include "tracer/io/file_bytes.h"
 #include "tracer/io/load_steps.h"
-#include "tracer/io/mesh_build.h"
+#include "tracer/io/obj_chunk.h"
 #include "tracer/io/text_scanner.h"
+#include "tracer/parallel/parallel.h"
 
 #include <fmt/format.h>
 
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <limits>
-#include <map>
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <iterator>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 namespace raypick {
 
 namespace {
 
-constexpr std::uint32_t kMaxIndex = 0x7fffffffu;
-
-// What a number in a face counts.
-struct IndexKind {
-    std::string_view name;
-    std::uint32_t ObjCorner::*index;
-    std::string_view keyword;
-};
-
-constexpr std::array<IndexKind, 3> kIndexKinds{{
-    {"vertex", &ObjCorner::position, "v"},
-    {"texture coordinate", &ObjCorner::uv, "vt"},
-    {"normal", &ObjCorner::normal, "vn"},
-}};
-
-// "3.1+e2": an exponent with its sign on the wrong side, as some writers print it.
-std::optional<double> parse_misplaced_sign(std::string_view word) {
-    const std::size_t e = word.find_first_of("eE");
-    if (e == std::string_view::npos || e == 0 || (word[e - 1] != '+' && word[e - 1] != '-')) {
-        return std::nullopt;
+// Behind the first end of a line at or after `offset` that no backslash joins with the next line.
+std::size_t line_begin_after(std::string_view text, std::size_t offset) {
+    while (offset < text.size()) {
+        const std::size_t newline = text.find('\n', offset);
+        if (newline == std::string_view::npos) break;
+        const std::string_view line = text.substr(0, newline);
+        const bool joined = line.ends_with('\\') || line.ends_with("\\\r");
+        offset = newline + 1;
+        if (!joined) return offset;
     }
-    std::string fixed(word);
-    std::swap(fixed[e - 1], fixed[e]);
-    return parse_number(fixed);
+    return text.size();
 }
 
-class ObjParser {
-public:
-    ObjParser(const std::filesystem::path& file, const LoadOptions& options,
-              std::vector<std::string>& warnings)
-        : text_(file),
-          scanner_(file.string(), text_.view(), true),
-          options_(options),
-          warnings_(warnings) {}
+// About chunk_bytes each.
+std::vector<ObjRange> split_lines(std::string_view text, std::size_t chunk_bytes) {
+    std::vector<ObjRange> ranges;
+    std::size_t begin = 0;
+    do {
+        const bool last = text.size() - begin < 2 * chunk_bytes;
+        const std::size_t end = last ? text.size() : line_begin_after(text, begin + chunk_bytes);
+        ranges.push_back({begin, end, {}, {}});
+        begin = end;
+    } while (begin < text.size());
+    return ranges;
+}
 
-    ObjFile parse() {
-        std::size_t lines = 0;
-        while (!scanner_.at_end()) {
-            if ((++lines & 0xfffu) == 0) {
-                load_step(options_, 0.6f * static_cast<float>(scanner_.offset()) /
-                                        static_cast<float>(text_.view().size()));
-            }
-            read_line(scanner_.word());
-            scanner_.next_line();
+// Lines that seem to be v, vt and vn lines. The parser has the last word.
+std::array<std::size_t, 3> count_vertex_lines(std::string_view lines) {
+    std::array<std::size_t, 3> counts{};
+    while (!lines.empty()) {
+        std::size_t at = 0;
+        while (at < lines.size() && is_blank(lines[at]))
+            ++at;
+        const auto character = [&](std::size_t i) { return i < lines.size() ? lines[i] : '\n'; };
+        if (character(at) == 'v') {
+            const char second = character(at + 1);
+            if (is_blank(second)) ++counts[0];
+            if (second == 't' && is_blank(character(at + 2))) ++counts[1];
+            if (second == 'n' && is_blank(character(at + 2))) ++counts[2];
         }
-        obj_.face_begin.push_back(obj_.corners.size());
+        const std::size_t newline = lines.find('\n', at);
+        lines.remove_prefix(newline == std::string_view::npos ? lines.size() : newline + 1);
+    }
+    return counts;
+}
+
+void count_vertices(std::string_view text, std::vector<ObjRange>& ranges) {
+    parallel_for(ranges.size(), 0, {}, [&](std::size_t i) {
+        ObjRange& range = ranges[i];
+        range.within = count_vertex_lines(text.substr(range.begin, range.end - range.begin));
+    });
+    for (std::size_t i = 1; i < ranges.size(); ++i) {
+        for (std::size_t kind = 0; kind < 3; ++kind)
+            ranges[i].before[kind] = ranges[i - 1].before[kind] + ranges[i - 1].within[kind];
+    }
+}
+
+// Did every chunk begin with as many vertices as there were?
+bool fit_together(const std::vector<ObjRange>& ranges, const std::vector<ObjChunk>& chunks) {
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+        for (std::size_t kind = 0; kind < 3; ++kind) {
+            if (count_of(chunks[i].obj, kind) != ranges[i].within[kind]) return false;
+        }
+    }
+    return true;
+}
+
+template <typename T>
+void append(std::vector<T>& target, std::vector<T>& added) {
+    if (target.capacity() == 0) {
+        target = std::move(added);  // there is one chunk only
+        return;
+    }
+    target.insert(target.end(), added.begin(), added.end());
+}
+
+// Puts one chunk behind the other, so that nothing shows where they met.
+class ChunkJoiner {
+public:
+    void add(ObjChunk chunk) {
+        take_names(chunk.obj);
+        add_runs(chunk.obj.runs);
+        last_ = in_file(chunk.last);
+        for (const std::uint64_t begin : chunk.obj.face_begin)
+            joined_.obj.face_begin.push_back(joined_.obj.corners.size() + begin);
+        append(joined_.obj.corners, chunk.obj.corners);
+        append(joined_.obj.positions, chunk.obj.positions);
+        append(joined_.obj.uvs, chunk.obj.uvs);
+        append(joined_.obj.normals, chunk.obj.normals);
+        append(joined_.obj.libraries, chunk.obj.libraries);
+        joined_.notes.add(chunk.notes);
+        for (std::size_t kind = 0; kind < 3; ++kind)
+            joined_.forward[kind].add(chunk.forward[kind]);
+    }
+
+    void reserve(const std::vector<ObjChunk>& chunks) {
+        std::size_t corners = 0;
+        std::size_t faces = 0;
+        std::array<std::size_t, 3> vertices{};
+        for (const ObjChunk& chunk : chunks) {
+            corners += chunk.obj.corners.size();
+            faces += chunk.obj.face_begin.size();
+            for (std::size_t kind = 0; kind < 3; ++kind)
+                vertices[kind] += count_of(chunk.obj, kind);
+        }
+        joined_.obj.corners.reserve(corners);
+        joined_.obj.face_begin.reserve(faces + 1);
+        joined_.obj.positions.reserve(vertices[0]);
+        joined_.obj.uvs.reserve(vertices[1]);
+        joined_.obj.normals.reserve(vertices[2]);
+    }
+
+    ObjChunk take() { return std::move(joined_); }
+
+private:
+    void take_names(ObjFile& obj) {
+        first_object_ = static_cast<int>(joined_.obj.objects.size());
+        append(joined_.obj.objects, obj.objects);
+        groups_.clear();
+        for (const std::string& name : obj.groups)
+            groups_.push_back(group_numbers_.number_of(name, joined_.obj.groups));
+        materials_.clear();
+        for (const std::string& name : obj.materials)
+            materials_.push_back(material_numbers_.number_of(name, joined_.obj.materials));
+    }
+
+    void add_runs(const std::vector<ObjRun>& runs) {
+        const auto first_face = static_cast<std::uint32_t>(joined_.obj.face_begin.size());
+        for (const ObjRun& run : runs) {
+            ObjRun added = in_file(run);
+            added.first_face += first_face;
+            if (!joined_.obj.runs.empty() && same_names(joined_.obj.runs.back(), added)) continue;
+            joined_.obj.runs.push_back(added);
+        }
+    }
+
+    // The chunk's names by their numbers in the file.
+    [[nodiscard]] ObjRun in_file(ObjRun run) const {
+        const auto number = [](int of_chunk, int before, const std::vector<int>& numbers) {
+            return of_chunk == kAsBefore ? before : numbers[static_cast<std::size_t>(of_chunk)];
+        };
+        run.object = run.object == kAsBefore ? last_.object : first_object_ + run.object;
+        run.group = number(run.group, last_.group, groups_);
+        run.material = number(run.material, last_.material, materials_);
+        return run;
+    }
+
+    ObjChunk joined_;
+    ObjRun last_;
+    NameNumbers group_numbers_;
+    NameNumbers material_numbers_;
+    // Of the chunk at hand.
+    int first_object_ = 0;
+    std::vector<int> groups_;
+    std::vector<int> materials_;
+};
+
+class ObjReader {
+public:
+    ObjReader(const std::filesystem::path& file, const LoadOptions& options)
+        : text_(file), file_(file.string()), options_(options) {}
+
+    ObjFile read(std::size_t chunk_bytes, std::vector<std::string>& warnings) {
+        chunk_ = parse(chunk_bytes);
+        chunk_.obj.face_begin.push_back(chunk_.obj.corners.size());
         check_forward_references();
-        warn_of_rest();
-        if (obj_.face_count() == 0) fail_without_faces();
-        return std::move(obj_);
+        warn_of_rest(warnings);
+        if (chunk_.obj.face_count() == 0) fail_without_faces();
+        return std::move(chunk_.obj);
     }
 
 private:
-    void read_line(std::string_view keyword) {
-        if (keyword.empty() || keyword[0] == '#') return;
-        if (keyword == "v") {
-            read_position();
-        } else if (keyword == "f" || keyword == "fo") {
-            read_face();
-        } else if (keyword == "vn") {
-            read_normal();
-        } else if (keyword == "vt") {
-            read_uv();
-        } else if (keyword == "o") {
-            current_.object = static_cast<int>(obj_.objects.size());
-            obj_.objects.push_back(clean_name(scanner_.rest()));
-        } else if (keyword == "g") {
-            current_.group = number_of(group_name(), obj_.groups, group_numbers_);
-        } else if (keyword == "usemtl") {
-            current_.material =
-                number_of(clean_name(scanner_.rest()), obj_.materials, material_numbers_);
-        } else if (keyword == "mtllib") {
-            obj_.libraries.emplace_back(scanner_.rest());
-        } else {
-            read_other(keyword);
+    ObjChunk parse(std::size_t chunk_bytes) {
+        std::vector<ObjRange> ranges = split_lines(text_.view(), chunk_bytes);
+        std::optional<std::vector<ObjChunk>> chunks;
+        if (ranges.size() > 1) chunks = parse_side_by_side(ranges);
+        if (!chunks) {
+            bytes_read_ = 0;
+            chunks.emplace();
+            chunks->push_back(parse_range({0, text_.view().size(), {}, {}}));
         }
+        ChunkJoiner joiner;
+        if (chunks->size() > 1) joiner.reserve(*chunks);
+        for (ObjChunk& chunk : *chunks)
+            joiner.add(std::move(chunk));
+        return joiner.take();
     }
 
-    // Lines and points have no surface, smoothing groups give way to the crease angle.
-    void read_other(std::string_view keyword) {
-        if (keyword == "s") return;
-        if (keyword == "l" || keyword == "p") {
-            note(lines_and_points_);
-        } else if (keyword == "curv" || keyword == "curv2" || keyword == "surf") {
-            note(free_forms_);
-        } else if (unknown_.count++ == 0) {
-            unknown_.first = scanner_.offset();
-            unknown_word_ = in_quotes(keyword);
+    // Nothing if something is wrong: who reads from the beginning finds out what is, and where.
+    std::optional<std::vector<ObjChunk>> parse_side_by_side(std::vector<ObjRange>& ranges) {
+        count_vertices(text_.view(), ranges);
+        std::vector<ObjChunk> chunks(ranges.size());
+        try {
+            parallel_for(ranges.size(), 0, {},
+                         [&](std::size_t i) { chunks[i] = parse_range(ranges[i]); });
+        } catch (const FileError&) {
+            return std::nullopt;
         }
+        if (!fit_together(ranges, chunks)) return std::nullopt;
+        return chunks;
     }
 
-    double coordinate(std::string_view what) {
-        if (const std::optional<double> value = scanner_.try_number()) return *value;
-        const std::size_t here = scanner_.offset();
-        if (const std::optional<double> value = parse_misplaced_sign(scanner_.word())) {
-            if (misplaced_signs_.count++ == 0) misplaced_signs_.first = here;
-            return *value;
-        }
-        scanner_.return_to(here);
-        return scanner_.number(what);
+    ObjChunk parse_range(const ObjRange& range) {
+        return parse_obj_chunk(file_, text_.view(), range, [this](std::size_t bytes) {
+            const std::size_t read = bytes_read_.fetch_add(bytes) + bytes;
+            load_step(options_,
+                      0.6f * static_cast<float>(read) / static_cast<float>(text_.view().size()));
+        });
     }
 
-    glm::dvec3 three(std::string_view x, std::string_view y, std::string_view z) {
-        const double a = coordinate(x);
-        const double b = coordinate(y);
-        return {a, b, coordinate(z)};
-    }
-
-    bool line_goes_on() {
-        const char next = scanner_.peek();
-        return next != '\n' && next != '#';
-    }
-
-    // Weights and colours may follow; lines may go on after a backslash.
-    void skip_words() {
-        while (line_goes_on())
-            scanner_.word();
-    }
-
-    void read_position() {
-        const glm::dvec3 p = three("x of a vertex", "y of a vertex", "z of a vertex");
-        if (!is_coordinate(p)) scanner_.fail(coordinate_complaint(p));
-        check_count(obj_.positions.size());
-        obj_.positions.push_back(p);
-        skip_words();
-    }
-
-    void read_normal() {
-        check_count(obj_.normals.size());
-        obj_.normals.push_back(
-            unit_or_zero(three("x of a normal", "y of a normal", "z of a normal")));
-        skip_words();
-    }
-
-    void read_uv() {
-        const double u = coordinate("u of a texture coordinate");
-        const double v = line_goes_on() ? coordinate("v of a texture coordinate") : 0.0;
-        check_count(obj_.uvs.size());
-        obj_.uvs.push_back(uv_or_zero(u, v));
-        skip_words();
-    }
-
-    void check_count(std::size_t count) const {
-        if (count >= kMaxIndex) scanner_.fail("too many vertices for this program");
-    }
-
-    void read_face() {
-        const std::size_t begin = obj_.corners.size();
-        const std::size_t here = scanner_.offset();
-        while (line_goes_on())
-            obj_.corners.push_back(corner(scanner_.word()));
-        const std::size_t count = obj_.corners.size() - begin;
-        if (count == 0) scanner_.fail("a face without corners");
-        if (count < 3) {
-            obj_.corners.resize(begin);
-            if (short_faces_.count++ == 0) short_faces_.first = here;
-            return;
-        }
-        begin_run_if_changed();
-        obj_.face_begin.push_back(begin);
-    }
-
-    void begin_run_if_changed() {
-        const auto same = [&](const ObjRun& run) {
-            return run.object == current_.object && run.group == current_.group &&
-                   run.material == current_.material;
-        };
-        if (!obj_.runs.empty() && same(obj_.runs.back())) return;
-        current_.first_face = static_cast<std::uint32_t>(obj_.face_begin.size());
-        obj_.runs.push_back(current_);
-    }
-
-    // v, v/vt, v//vn or v/vt/vn
-    ObjCorner corner(std::string_view word) {
-        ObjCorner corner;
-        std::string_view left = word;
-        for (std::size_t kind = 0; kind < kIndexKinds.size(); ++kind) {
-            const bool given = !left.empty() && left[0] != '/';
-            if (given) {
-                corner.*kIndexKinds[kind].index = index(kind, left, word);
-            } else if (kind == 0) {
-                fail_face(word);
-            }
-            if (left.empty()) return corner;
-            if (left[0] != '/') fail_face(word);
-            left.remove_prefix(1);
-        }
-        fail_face(word);
-    }
-
-    [[noreturn]] void fail_face(std::string_view word) const {
-        scanner_.fail(
-            fmt::format("{} is no corner of a face: v, v/vt, v//vn or v/vt/vn", in_quotes(word)));
-    }
-
-    // Takes the number off `left`. Positive numbers count from 1, negative ones back from the
-    // latest.
-    std::uint32_t index(std::size_t kind, std::string_view& left, std::string_view word) {
-        long long number = 0;
-        const char* const begin = left.data() + (left[0] == '+' ? 1 : 0);
-        const auto [stop, error] = std::from_chars(begin, left.data() + left.size(), number);
-        if (error == std::errc::invalid_argument) fail_face(word);
-        left.remove_prefix(static_cast<std::size_t>(stop - left.data()));
-        const auto count = static_cast<long long>(counts(kind));
-        const long long index = number < 0 ? count + number : number - 1;
-        if (error != std::errc() || number == 0 || index < 0 || index > kMaxIndex) {
-            scanner_.fail(out_of_range(kind, word, counts(kind)));
-        }
-        const auto result = static_cast<std::uint32_t>(index);
-        if (index >= count) note_forward(kind, result, word);
-        return result;
-    }
-
-    [[nodiscard]] std::size_t counts(std::size_t kind) const {
-        return kind == 0   ? obj_.positions.size()
-               : kind == 1 ? obj_.uvs.size()
-                           : obj_.normals.size();
-    }
-
-    static std::string out_of_range(std::size_t kind, std::string_view word, std::size_t count) {
-        return fmt::format("{}: there is no such {} (the file has {} {} lines{})", in_quotes(word),
-                           kIndexKinds[kind].name, count, kIndexKinds[kind].keyword,
-                           word[0] == '0' ? "; OBJ counts from 1" : "");
-    }
-
-    // A corner may name what stands further down in the file; the furthest one is checked at the
-    // end.
-    struct ForwardReference {
-        std::uint32_t index = 0;
-        std::size_t offset = 0;
-        std::string_view word;
-    };
-
-    void note_forward(std::size_t kind, std::uint32_t index, std::string_view word) {
-        ForwardReference& furthest = forward_[kind];
-        if (!furthest.word.empty() && index <= furthest.index) return;
-        furthest = {index, scanner_.offset() - word.size(), word};
-    }
+    [[nodiscard]] TextScanner scanner() const { return {file_, text_.view(), true}; }
 
     void check_forward_references() const {
-        for (std::size_t kind = 0; kind < forward_.size(); ++kind) {
-            const ForwardReference& furthest = forward_[kind];
-            if (furthest.word.empty() || furthest.index < counts(kind)) continue;
-            scanner_.fail_at(furthest.offset, out_of_range(kind, furthest.word, counts(kind)));
+        for (std::size_t kind = 0; kind < chunk_.forward.size(); ++kind) {
+            const ForwardReference& furthest = chunk_.forward[kind];
+            const std::size_t count = count_of(chunk_.obj, kind);
+            if (furthest.word.empty() || furthest.index < count) continue;
+            scanner().fail_at(furthest.offset, out_of_range(kind, furthest.word, count));
         }
     }
 
-    // Several names in one line name one group.
-    std::string group_name() {
-        std::string name;
-        while (!scanner_.at_line_end()) {
-            if (!name.empty()) name += ' ';
-            name += clean_name(scanner_.word());
-        }
-        return name.empty() ? "default" : name;  // as the format's specification says
-    }
-
-    static int number_of(std::string name, std::vector<std::string>& names,
-                         std::map<std::string, int, std::less<>>& numbers) {
-        const auto [entry, is_new] = numbers.try_emplace(name, static_cast<int>(names.size()));
-        if (is_new) names.push_back(std::move(name));
-        return entry->second;
-    }
-
-    // What is passed over, to be told once.
-    struct Note {
-        std::size_t count = 0;
-        std::size_t first = 0;  // offset
-    };
-
-    void note(Note& what) {
-        if (what.count++ == 0) what.first = scanner_.offset();
-    }
-
-    void warn(const Note& what, const std::string& text) {
-        if (what.count == 0) return;
-        const std::string more = what.count > 1 ? fmt::format(" ({} times)", what.count) : "";
-        warnings_.push_back(scanner_.place(what.first, text + more));
-    }
-
-    void warn_of_rest() {
-        warn(lines_and_points_, "lines and points are not shown");
-        warn(free_forms_, "free-form curves and surfaces are not read");
-        warn(short_faces_, "a face with fewer than 3 corners is left out");
-        warn(misplaced_signs_, "the sign stands before the exponent's e: read as if behind it");
-        warn(unknown_, fmt::format("{} is no OBJ keyword that we know: ignored", unknown_word_));
+    void warn_of_rest(std::vector<std::string>& warnings) const {
+        const auto warn = [&](const Note& what, const std::string& text) {
+            if (what.count == 0) return;
+            const std::string more = what.count > 1 ? fmt::format(" ({} times)", what.count) : "";
+            warnings.push_back(scanner().place(what.first, text + more));
+        };
+        const ObjNotes& notes = chunk_.notes;
+        warn(notes.lines_and_points, "lines and points are not shown");
+        warn(notes.free_forms, "free-form curves and surfaces are not read");
+        warn(notes.short_faces, "a face with fewer than 3 corners is left out");
+        warn(notes.misplaced_signs,
+             "the sign stands before the exponent's e: read as if behind it");
+        warn(notes.unknown,
+             fmt::format("{} is no OBJ keyword that we know: ignored", notes.unknown_word));
     }
 
     [[noreturn]] void fail_without_faces() const {
-        if (unknown_.count > 0) {
-            scanner_.fail_at(unknown_.first,
-                             unknown_word_ + " is no OBJ keyword, and no face follows");
+        const ObjNotes& notes = chunk_.notes;
+        if (notes.unknown.count > 0) {
+            scanner().fail_at(notes.unknown.first,
+                              notes.unknown_word + " is no OBJ keyword, and no face follows");
         }
-        if (short_faces_.count > 0) {
-            scanner_.fail_at(short_faces_.first,
-                             "a face with fewer than 3 corners, and there is no other face");
+        if (notes.short_faces.count > 0) {
+            scanner().fail_at(notes.short_faces.first,
+                              "a face with fewer than 3 corners, and there is no other face");
         }
-        throw FileError(
-            scanner_.file(),
-            fmt::format("has {} vertices but no faces: nothing to show", obj_.positions.size()));
+        throw FileError(file_, fmt::format("has {} vertices but no faces: nothing to show",
+                                           chunk_.obj.positions.size()));
     }
 
     FileText text_;
-    TextScanner scanner_;
+    std::string file_;
     const LoadOptions& options_;
-    std::vector<std::string>& warnings_;
-    ObjFile obj_;
-    ObjRun current_;
-    std::map<std::string, int, std::less<>> group_numbers_;
-    std::map<std::string, int, std::less<>> material_numbers_;
-    std::array<ForwardReference, 3> forward_;
-    Note lines_and_points_;
-    Note free_forms_;
-    Note short_faces_;
-    Note misplaced_signs_;
-    Note unknown_;
-    std::string unknown_word_;
+    std::atomic<std::size_t> bytes_read_{0};
+    ObjChunk chunk_;
 };
 
 }  // namespace
 
 ObjFile parse_obj(const std::filesystem::path& file, const LoadOptions& options,
-                  std::vector<std::string>& warnings) {
-    return ObjParser(file, options, warnings).parse();
+                  std::vector<std::string>& warnings, std::size_t chunk_bytes) {
+    return ObjReader(file, options).read(chunk_bytes, warnings);
 }
 
 }  // namespace raypick

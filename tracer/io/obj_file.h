@@ -52,8 +52,11 @@ struct ObjFile {
     }
 };
 
-// Throws FileError (with the line) or Cancelled.
+// What one thread reads at a time.
+inline constexpr std::size_t kObjChunkBytes = 1u << 19u;
+
+// Throws FileError (with the line) or Cancelled. Whatever `chunk_bytes` is, the result is the same.
 ObjFile parse_obj(const std::filesystem::path& file, const LoadOptions& options,
-                  std::vector<std::string>& warnings);
+                  std::vector<std::string>& warnings, std::size_t chunk_bytes = kObjChunkBytes);
 
 }  // namespace raypick
