@@ -20,7 +20,9 @@ if(TARGET raypick_io AND NOT RAYPICK_SANITIZE)
         bench/options.cpp
         bench/our_modes.cpp
         bench/picks.cpp
+        bench/model_writers.cpp
         bench/ray_sets.cpp
+        bench/reads.cpp
         bench/report.cpp
         bench/scenes.cpp
         bench/screen.cpp
@@ -40,6 +42,17 @@ if(TARGET raypick_io AND NOT RAYPICK_SANITIZE)
     if(embree_FOUND)
         target_link_libraries(raypick_bench PRIVATE embree)
         target_compile_definitions(raypick_bench PRIVATE RAYPICK_HAS_EMBREE)
+    endif()
+
+    find_package(assimp QUIET)
+    if(assimp_FOUND)
+        target_link_libraries(raypick_bench PRIVATE assimp::assimp)
+        target_compile_definitions(raypick_bench PRIVATE RAYPICK_HAS_ASSIMP)
+    endif()
+    find_package(tinyobjloader QUIET)
+    if(tinyobjloader_FOUND)
+        target_link_libraries(raypick_bench PRIVATE tinyobjloader::tinyobjloader)
+        target_compile_definitions(raypick_bench PRIVATE RAYPICK_HAS_TINYOBJ)
     endif()
 
     # What a run unpacks and writes stays in the build folder.

@@ -9,6 +9,7 @@ void run_kernels(Report& report);  // rays per second against Embree's single, p
 void run_frames(Report& report);   // whole pictures against Embree, POV-Ray and Tachyon
 void run_builds(Report& report);   // trees against Embree's
 void run_loads(Report& report);    // from start to picture against F3D
+void run_reads(Report& report);    // files against assimp and tinyobjloader
 void run_picks(Report& report);    // one pick through the public call
 void run_memory(Report& report);   // bytes a triangle, resident and at the peak of a build
 

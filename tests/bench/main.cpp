@@ -36,6 +36,7 @@ int run_all(const Options& options) {
     run_picks(report);
     run_memory(report);
     run_loads(report);
+    run_reads(report);
     return report.finish();
 }
 
