@@ -135,11 +135,13 @@ double GltfAccessor::value(const char* element, std::size_t component) const {
 
 glm::dvec3 GltfAccessor::vec3(std::size_t index) const {
     const char* const at = element(index);
+    if (at != nullptr && base_.component == Component::float32) return load<glm::vec3>(at);
     return {value(at, 0), value(at, 1), value(at, 2)};
 }
 
 glm::dvec2 GltfAccessor::vec2(std::size_t index) const {
     const char* const at = element(index);
+    if (at != nullptr && base_.component == Component::float32) return load<glm::vec2>(at);
     return {value(at, 0), value(at, 1)};
 }
 
@@ -150,7 +152,15 @@ bool GltfAccessor::holds_indices() const {
 
 std::uint32_t GltfAccessor::index(std::size_t element_index) const {
     const char* const at = element(element_index);
-    return at == nullptr ? 0 : static_cast<std::uint32_t>(read(at, base_.component));
+    if (at == nullptr) return 0;
+    switch (base_.component) {
+        case Component::uint32:
+            return load<std::uint32_t>(at);
+        case Component::uint16:
+            return load<std::uint16_t>(at);
+        default:
+            return static_cast<std::uint32_t>(read(at, base_.component));
+    }
 }
 
 void GltfAccessor::fail(std::size_t element, const std::string& complaint) const {

@@ -157,6 +157,8 @@ private:
 
     void add_triangles(Mode mode) {
         const std::size_t step = mode == Mode::triangles ? 3 : 1;
+        // Of the first primitive only: making room each time would move all that is there.
+        if (data_.triangles.empty()) data_.triangles.reserve(corners_.size() / step);
         for (std::size_t i = 0; i + 2 < corners_.size(); i += step) {
             const std::uint32_t a = corners_[mode == Mode::fan ? 0 : i];
             const std::uint32_t b = corners_[i + 1];

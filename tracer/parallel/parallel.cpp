@@ -8,6 +8,7 @@
 #include <vector>
 
 #ifdef RAYPICK_THREADS_TBB
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
@@ -60,6 +61,12 @@ private:
 
 int hardware_threads() {
     return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+void count_cores() {
+#ifdef RAYPICK_THREADS_TBB
+    static_cast<void>(tbb::info::default_concurrency());  // oneTBB keeps what it found
+#endif
 }
 
 void parallel_for(std::size_t count, int threads, const std::stop_token& stop,

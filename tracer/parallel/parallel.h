@@ -17,4 +17,10 @@ void parallel_for(std::size_t count, int threads, const std::stop_token& stop,
 // Number of threads that 0 stands for.
 int hardware_threads();
 
+// Counts the cores now, for all loops to come. To be called before another thread begins with
+// loops while this one starts OpenGL: Mesa moves the thread that starts it from core to core, to
+// learn which ones share a cache, and oneTBB, which asks where the first thread may run, would take
+// one core for all that there are.
+void count_cores();
+
 }  // namespace raypick

@@ -1,4 +1,5 @@
 // How far things reach, and where the scene's origin goes.
+#include "tracer/parallel/parallel.h"
 #include "tracer/scene/scene.h"
 
 #include <glm/common.hpp>
@@ -98,8 +99,13 @@ std::optional<ObjectExtent> set_extent(const ConeSet& set) {
 class SharedExtents {
 public:
     explicit SharedExtents(const Scene& scene) : scene_(scene) {
+        constexpr std::size_t kFewTriangles = 100'000;  // waking threads would take longer
+        std::size_t triangles = 0;
         for (const Mesh& mesh : scene.meshes)
-            meshes_.push_back(mesh_extent(mesh));
+            triangles += mesh.triangles.size();
+        meshes_.resize(scene.meshes.size());
+        parallel_for(meshes_.size(), triangles > kFewTriangles ? 0 : 1, {},
+                     [&](std::size_t i) { meshes_[i] = mesh_extent(scene.meshes[i]); });
         for (const SphereSet& set : scene.sphere_sets)
             sphere_sets_.push_back(set_extent(set));
         for (const ConeSet& set : scene.cone_sets)

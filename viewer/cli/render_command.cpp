@@ -1,3 +1,4 @@
+#include "tracer/parallel/parallel.h"
 #include "tracer/render/render_job.h"
 #include "viewer/cli/commands.h"
 #include "viewer/cli/exit_code.h"
@@ -139,6 +140,7 @@ Json stats_json(const RenderCommand& command, const OpenedScene& opened, const F
 OpenedScene load(const RenderCommand& command, const Interrupt& interrupt,
                  std::optional<RasterStart>& raster) {
     if (!command.raster) return load_timed(command.scene, interrupt.token());
+    count_cores();
     std::future<OpenedScene> loading = std::async(
         std::launch::async, [&] { return load_timed(command.scene, interrupt.token()); });
     raster.emplace(command.size);
