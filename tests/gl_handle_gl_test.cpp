@@ -162,12 +162,22 @@ TEST(OffscreenContextChoice, AnUnknownBackendIsNamed) {
 // Each program that a scene may ask for.
 void expect_all_shaders_compile() {
     ShaderSet shaders;
-    for (const bool textured : {false, true}) {
-        for (std::size_t kind = 0; kind < kShapeKinds; ++kind) {
-            EXPECT_NO_THROW(shaders.shape(Pass::depth, kind, textured)) << kind;
-            EXPECT_NO_THROW(shaders.shape(Pass::surface, kind, textured)) << kind;
+    const SurfaceLook looks[] = {{false, false, false},
+                                 {true, false, false},
+                                 {true, true, false},
+                                 {true, false, true},
+                                 {true, true, true}};
+    for (std::size_t kind = 0; kind < kShapeKinds; ++kind) {
+        for (const SurfaceLook& look : looks) {
+            EXPECT_NO_THROW(shaders.shape(Pass::depth, kind, look)) << kind;
+            EXPECT_NO_THROW(shaders.shape(Pass::surface, kind, look)) << kind;
         }
-        EXPECT_NO_THROW(shaders.shade(textured));
+    }
+    for (const bool textured : {false, true}) {
+        for (const bool image_sky : {false, true}) {
+            for (const bool shaped_lights : {false, true})
+                EXPECT_NO_THROW(shaders.shade({textured, image_sky, shaped_lights}));
+        }
     }
 }
 
