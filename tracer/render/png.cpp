@@ -24,7 +24,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::size_t kBandBytes = 1u << 18u;
-// Rendered pictures shrink to about 1.2 times what level 6 leaves, in a third of the time.
+// Measured on rendered pictures: hardly slower than 1 and 3 to 5 % smaller; 3 takes longer.
 constexpr int kLevel = 2;
 
 std::size_t row_bytes(ImageSize size) {
