@@ -22,7 +22,14 @@ protected:
         if (!context_) return;
         accel_ = open("default.json");
         view_ = std::make_unique<SceneView>();
-        view_->set_scene(accel_, choose_camera(accel_->scene(), kSize, {}));
+        show(accel_);
+    }
+    void show(const std::shared_ptr<const Accel>& accel) {
+        show_without_trees(accel->shared_scene());
+        view_->set_accel(accel);
+    }
+    void show_without_trees(const std::shared_ptr<const Scene>& scene) {
+        view_->set_scene(scene, scene_bounds(*scene), choose_camera(*scene, kSize, {}));
     }
     static std::shared_ptr<const Accel> open(const std::string& name) {
         return std::make_shared<const Accel>(
@@ -176,10 +183,75 @@ TEST_F(SceneViewTest, ABadCameraIsAMessageNotACrash) {
 TEST_F(SceneViewTest, AnotherSceneReplacesPictureAndPicks) {
     ASSERT_TRUE(prepare_until(&settings_, [&] { return traced(); }));
     const auto other = open("triangle.json");
-    view_->set_scene(other, choose_camera(other->scene(), kSize, {}));
+    show(other);
     EXPECT_EQ(view_->shown(), std::nullopt);
     view_->prepare(kSize, nullptr);
-    EXPECT_EQ(view_->shown()->accel, other);
+    EXPECT_EQ(view_->shown()->scene, other->shared_scene());
+}
+
+TEST_F(SceneViewTest, OpenGlNeedsNoTree) {
+    view_->prepare(kSize, nullptr);
+    const Image wanted = view_->picture();
+    show_without_trees(accel_->shared_scene());
+    view_->prepare(kSize, &settings_);
+    ASSERT_TRUE(view_->shown().has_value());
+    EXPECT_FALSE(traced());
+    EXPECT_TRUE(in_state(PreviewStatus::State::off)) << "rays wait for the tree";
+    EXPECT_EQ(view_->picture().colour, wanted.colour);
+    EXPECT_EQ(view_->picture().object, wanted.object);
+    view_->zoom(1.0, std::nullopt);  // without knowing what is there
+    view_->prepare(kSize, &settings_);
+    EXPECT_NE(view_->picture().object, wanted.object);
+    view_->set_accel(accel_);
+    EXPECT_TRUE(prepare_until(&settings_, [&] { return traced(); }));
+}
+
+TEST_F(SceneViewTest, AQuestionIsAnsweredLaterAsItWouldHaveBeenAtOnce) {
+    view_->prepare(kSize, nullptr);
+    const Pixel pixel{90, 140};
+    const auto wanted = view_->pick(pixel);
+    ASSERT_TRUE(wanted && wanted->pick);
+    show_without_trees(accel_->shared_scene());
+    EXPECT_FALSE(view_->question(pixel).has_value()) << "nothing is shown yet";
+    view_->prepare(kSize, nullptr);
+    const std::optional<PickQuestion> question = view_->question(pixel);
+    ASSERT_TRUE(question.has_value());
+    EXPECT_FALSE(view_->answer(*question).has_value());
+    EXPECT_FALSE(view_->pick(pixel).has_value());
+    view_->camera().orbit(0.8, 0.1);
+    view_->prepare(kSize, nullptr);
+    view_->set_accel(accel_);
+    const auto answer = view_->answer(*question);
+    ASSERT_TRUE(answer && answer->pick);
+    EXPECT_EQ(answer->pixel, wanted->pixel);
+    EXPECT_EQ(answer->pick->hit, wanted->pick->hit);
+    EXPECT_EQ(answer->pick->point, wanted->pick->point);
+    // What was asked of one scene is not answered from another.
+    show(open("triangle.json"));
+    EXPECT_FALSE(view_->answer(*question).has_value());
+}
+
+TEST_F(SceneViewTest, BetterTreesReplaceTheFirstOnesWithoutAHitch) {
+    const BuildOptions soon{.quality = TreeQuality::first};
+    const auto first = std::make_shared<const Accel>(accel_->shared_scene(), soon);
+    view_->set_accel(first);
+    settings_.threads = 1;
+    settings_.depth = 24;  // slow enough to be caught in the middle
+    settings_.cutoff = 0.0f;
+    ASSERT_TRUE(prepare_until(&settings_, [&] { return traced(); }));
+    const std::uint64_t rays = view_->trace_status().progress.rays.eye;
+    view_->set_accel(accel_);
+    view_->prepare(kSize, &settings_);
+    EXPECT_TRUE(traced()) << "the picture stays";
+    EXPECT_GE(view_->trace_status().progress.rays.eye, rays) << "it was begun again";
+    ASSERT_TRUE(
+        prepare_until(&settings_, [&] { return in_state(PreviewStatus::State::finished); }));
+    const Image picture = view_->picture();
+    view_->prepare(kSize, nullptr);
+    ASSERT_TRUE(
+        prepare_until(&settings_, [&] { return in_state(PreviewStatus::State::finished); }));
+    EXPECT_EQ(view_->picture().colour, picture.colour);
+    EXPECT_EQ(view_->picture().object, picture.object);
 }
 
 TEST_F(SceneViewTest, ZoomingInGoesToTheObjectUnderTheCursor) {

@@ -1,10 +1,8 @@
 #include "viewer/app/app.h"
 
-#include "viewer/app/panels.h"
 #include "viewer/app/view_words.h"
 
 #include <fmt/format.h>
-#include <glad/gl.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -52,6 +50,7 @@ App::App(const ViewOptions& options, Window& window, InputState& input)
       ui_scale_(chosen_scale(options.ui_scale, window)),
       ui_(window, ui_scale_),
       opener_(Window::wake),
+      trees_(Window::wake),
       saver_(Window::wake),
       trace_(options.trace) {
     settings_.depth = options.depth;
@@ -63,7 +62,7 @@ App::App(const ViewOptions& options, Window& window, InputState& input)
 void App::run() {
     while (!quit_ && !window_.close_wanted()) {
         if (window_.wait(frames_due_ > 0 ? 0.0 : patience())) settle();
-        if (working() || ui_.typing()) frames_due_ = std::max(frames_due_, 1);
+        if (working() || trees_.news() || ui_.typing()) frames_due_ = std::max(frames_due_, 1);
         if (frames_due_ == 0) continue;
         --frames_due_;
         step();
@@ -97,6 +96,7 @@ void App::step() {
     draw();
     window_.set_title(title());
     remember_screen();
+    update_trees();
 }
 
 void App::remember_screen() {
@@ -137,19 +137,40 @@ void App::take_results() {
 
 void App::take(Document document) {
     try {
-        view_.set_scene(document.accel, first_camera(document.scene()));
+        view_.set_scene(document.scene, document.bounds, first_camera(*document.scene));
     } catch (const Error& error) {
         complain("This scene can't be shown", error.what());
-        if (document_) view_.set_scene(document_->accel, view_.camera().camera());
+        if (!document_) return;
+        view_.set_scene(document_->scene, document_->bounds, view_.camera().camera());
+        view_.set_accel(trees_.progress().accel);
         return;
     }
-    next_object_id_ = std::max(next_object_id_, document.scene().next_object_id);
+    trees_.set_scene(document.scene);
+    next_object_id_ = std::max(next_object_id_, document.scene->next_object_id);
     selection_.clear();
+    clicks_.clear();
     hover_ = {};
     message_.clear();
     document_ = std::move(document);
     std::vector<std::string> coarser = view_.warnings();
     std::move(coarser.begin(), coarser.end(), std::back_inserter(document_->warnings));
+}
+
+// After a frame, so that the first one of a scene is there before anything else is begun.
+void App::update_trees() {
+    if (!trees_.update(opener_.progress().has_value())) return;
+    settle();
+    const BuildProgress& trees = trees_.progress();
+    view_.set_accel(trees.accel);
+    answer_clicks();
+    if (trees.error.empty()) return;
+    if (trees.accel) {
+        message_ = fmt::format("No better trees: {}. Picks and frames go on with the first ones",
+                               trees.error);
+    } else {
+        clicks_.clear();
+        complain("Nothing in this scene can be picked", trees.error);
+    }
 }
 
 Camera App::first_camera(const Scene& scene) {
@@ -182,12 +203,21 @@ void App::apply(const ZoomAction& action) {
 }
 
 void App::apply(const ClickAction& action) {
-    const std::optional<PixelPick> pick = view_.pick(action.pixel);
-    if (!pick) return;
-    selection_.click(*pick, action.add);
+    const std::optional<PickQuestion> question = view_.question(action.pixel);
+    if (!question) return;
     message_.clear();
-    if (!options_.print_picks) return;
-    std::puts(to_json(*pick).c_str());
+    clicks_.push_back({*question, action.add});
+    answer_clicks();
+}
+
+void App::answer_clicks() {
+    if (!trees_.progress().accel) return;
+    for (const WaitingClick& click : std::exchange(clicks_, {})) {
+        const std::optional<PixelPick> pick = view_.answer(click.question);
+        if (!pick) continue;  // of another scene
+        selection_.click(*pick, click.add);
+        if (options_.print_picks) std::puts(to_json(*pick).c_str());
+    }
     std::fflush(stdout);
 }
 
@@ -261,7 +291,7 @@ void App::toggle_help() {
 void App::copy_view() {
     if (!view_.shown()) return;
     const ShownFrame& frame = *view_.shown();
-    window_.set_clipboard(view_words(frame.camera, frame.accel->scene().origin, frame.size));
+    window_.set_clipboard(view_words(frame.camera, frame.scene->origin, frame.size));
     message_ = "Copied the view as command-line options";
 }
 
@@ -272,6 +302,7 @@ void App::escape() {
         view_.cancel_trace();
     } else {
         selection_.clear();
+        clicks_.clear();
     }
 }
 
@@ -324,7 +355,7 @@ void App::save_file(const PathDialog& dialog, const std::filesystem::path& file)
         save_picture(file);
     } else if (document_ && !saver_.busy()) {
         message_ = fmt::format("Saving {} ...", file.string());
-        saver_.save(document_->accel, file);
+        saver_.save(document_->scene, file);
     }
 }
 
@@ -338,8 +369,11 @@ void App::update_hover() {
     const std::optional<Pixel> pixel = input_.hover();
     const std::optional<Pixel> sampled =
         pixel ? std::optional(view_.sampled_pixel(*pixel)) : std::nullopt;
-    if (sampled == hover_.sampled && view_.shown() == hover_.frame) return;
-    hover_ = {sampled, view_.shown(), pixel ? view_.pick(*pixel) : std::nullopt};
+    const bool can_ask = trees_.progress().accel != nullptr;
+    if (sampled == hover_.sampled && view_.shown() == hover_.frame && can_ask == hover_.asked) {
+        return;
+    }
+    hover_ = {sampled, view_.shown(), can_ask, pixel ? view_.pick(*pixel) : std::nullopt};
 }
 
 std::vector<ObjectId> App::selected_objects() const {
@@ -347,119 +381,6 @@ std::vector<ObjectId> App::selected_objects() const {
     for (const Selection::Entry& entry : selection_.entries())
         objects.push_back(entry.object);
     return objects;
-}
-
-void App::draw() {
-    const WindowMetrics& metrics = layout_.window;
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glViewport(0, 0, metrics.framebuffer_cols, metrics.framebuffer_rows);
-    glClearColor(0.10f, 0.11f, 0.12f, 1.0f);
-    glClear(GL_COLOR_BUFFER_BIT);
-    // The status bar names what the cursor is on; an outline is for what is selected.
-    view_.present(layout_.view, metrics.framebuffer_rows, selected_objects());
-    ui_.begin_frame();
-    draw_panels();
-    ui_.end_frame();
-    window_.swap();
-}
-
-void App::draw_panels() {
-    if (panels_) {
-        draw_side_panel();
-        draw_status_bar({hover_text(), message_.empty() ? view_text() : message_},
-                        layout_.status_bar);
-    }
-    draw_loading();
-    if (!document_ && !load_card_) draw_empty_hint(view_region());
-    draw_dialog();
-}
-
-void App::draw_side_panel() {
-    begin_side_panel(layout_.side_panel);
-    draw_scene_panel(document_ ? &*document_ : nullptr);
-    const std::optional<Command> command = draw_selection_panel(selection_);
-    RenderSettings edited = settings_;
-    const TracePanel panel{trace_, document_.has_value(), saver_.busy(), view_.trace_status()};
-    const std::optional<TraceRequest> request = draw_trace_panel(panel);
-    if (draw_trace_settings(edited)) settings_ = edited;
-    end_side_panel();
-    if (command) apply(*command);
-    if (request == TraceRequest::toggle) apply(Command::toggle_trace);
-    if (request == TraceRequest::cancel) view_.cancel_trace();
-    if (request == TraceRequest::save) apply(Command::save);
-}
-
-void App::draw_loading() {
-    load_card_.reset();
-    const std::optional<OpenProgress> progress = opener_.progress();
-    if (!progress) return;
-    const LoadCard card = draw_load_card(*progress, view_region(), !document_);
-    load_card_ = card.place;
-    if (card.cancelled) opener_.cancel();
-}
-
-void App::draw_dialog() {
-    // Confirmed only now, after what was typed before Enter has reached the text field.
-    const OverlayAnswer answer = draw_overlay(overlay_, std::exchange(confirm_, false));
-    if (answer.name) {
-        const PathDialog dialog = std::get<PathDialog>(std::exchange(overlay_, std::monostate{}));
-        if (dialog.purpose == PathDialog::Purpose::open) {
-            open(*answer.name);
-        } else {
-            save_file(dialog, *answer.name);
-        }
-    } else if (answer.close) {
-        overlay_ = std::monostate{};
-    }
-}
-
-UiRegion App::view_region() const {
-    const WindowMetrics& window = layout_.window;
-    return {0.0, 0.0, window.window_width - layout_.side_panel.width,
-            window.window_height - layout_.status_bar.height};
-}
-
-std::string App::hover_text() const {
-    if (!hover_.pick) return "";
-    if (!hover_.pick->pick) return "background";
-    const Pick& pick = *hover_.pick->pick;
-    return pick.material.empty() ? pick.object
-                                 : fmt::format("{}  ({})", pick.object, pick.material);
-}
-
-std::string App::view_text() const {
-    if (!view_.shown()) return "F1 help";
-    const ShownFrame& frame = *view_.shown();
-    const bool parallel = frame.camera.projection == Projection::orthographic;
-    return fmt::format("{}{}   {} x {}   F1 help", parallel ? "orthographic   " : "",
-                       frame.traced ? "ray traced" : "OpenGL", frame.size.cols, frame.size.rows);
-}
-
-std::string App::title() const {
-    std::string title = "raypick";
-    if (document_) title += " - " + document_->file.filename().string();
-    if (const std::optional<OpenProgress> progress = opener_.progress()) {
-        return title + " - opening " + progress->file.filename().string();
-    }
-    if (std::holds_alternative<MessageBox>(overlay_)) return title + " - error";
-    if (const auto* dialog = std::get_if<PathDialog>(&overlay_)) {
-        const bool saving = dialog->purpose != PathDialog::Purpose::open;
-        // Named once one can type.
-        if (ui_.typing()) return title + (saving ? " - save" : " - open");
-    }
-    switch (view_.trace_status().state) {
-        case PreviewStatus::State::off:
-            return title;
-        case PreviewStatus::State::tracing:
-            return title + " - tracing";
-        case PreviewStatus::State::finished:
-            return title + " - traced";
-        case PreviewStatus::State::cancelled:
-            return title + " - stopped";
-        case PreviewStatus::State::failed:
-            return title + " - failed";
-    }
-    return title;
 }
 
 }  // namespace raypick

@@ -3,6 +3,7 @@
 
 #include "picking/selection.h"
 #include "viewer/app/document.h"
+#include "viewer/app/document_trees.h"
 #include "viewer/app/file_saver.h"
 #include "viewer/app/layout.h"
 #include "viewer/app/overlays.h"
@@ -30,7 +31,14 @@ private:
     struct Hover {
         std::optional<Pixel> sampled;  // the pixel whose sample is shown under the cursor
         std::optional<ShownFrame> frame;
+        bool asked = false;  // there was a tree to ask
         std::optional<PixelPick> pick;
+    };
+
+    // A click that no tree was there to answer.
+    struct WaitingClick {
+        PickQuestion question;
+        bool add = false;
     };
 
     void step();
@@ -42,6 +50,8 @@ private:
     void open(const std::filesystem::path& file);
     void take_results();
     void take(Document document);
+    void update_trees();
+    void answer_clicks();
     [[nodiscard]] Camera first_camera(const Scene& scene);
     void complain(const std::string& title, const std::string& text);
 
@@ -83,11 +93,13 @@ private:
     UiSession ui_;
     SceneView view_;
     DocumentOpener opener_;
+    DocumentTrees trees_;
     FileSaver saver_;
 
     std::optional<Document> document_;
     ObjectId next_object_id_ = 0;
     Selection selection_;
+    std::vector<WaitingClick> clicks_;  // oldest first
     Hover hover_;
     RenderSettings settings_;
     bool trace_ = false;

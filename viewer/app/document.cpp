@@ -24,7 +24,6 @@ struct DocumentOpener::Work {
     LoadOptions options;
     Clock::time_point start = Clock::now();
     std::atomic<float> fraction = 0.0f;
-    std::atomic<OpenStage> stage = OpenStage::reading;
     std::atomic<bool> ended = false;  // `result` is written before, read after
     std::optional<OpenResult> result;
 
@@ -37,14 +36,10 @@ Document DocumentOpener::Work::open() {
     Document document;
     document.file = file;
     document.warnings = std::move(loaded.warnings);
+    check_scene(loaded.scene);
+    document.bounds = scene_bounds(loaded.scene);
+    document.scene = std::make_shared<const Scene>(std::move(loaded.scene));
     document.load_seconds = seconds_since(start);
-    stage = OpenStage::building;
-    const Clock::time_point build_start = Clock::now();
-    BuildOptions build;
-    build.stop = options.stop;
-    document.accel = std::make_shared<const Accel>(
-        std::make_shared<const Scene>(std::move(loaded.scene)), build);
-    document.build_seconds = seconds_since(build_start);
     return document;
 }
 
@@ -103,7 +98,7 @@ std::optional<OpenResult> DocumentOpener::take_result() {
 
 std::optional<OpenProgress> DocumentOpener::progress() const {
     if (!work_) return std::nullopt;
-    return OpenProgress{work_->file, work_->stage, work_->fraction, seconds_since(work_->start)};
+    return OpenProgress{work_->file, work_->fraction, seconds_since(work_->start)};
 }
 
 void DocumentOpener::join_ended() {

@@ -1,7 +1,8 @@
 // The open scene, and opening another one beside the running window.
 #pragma once
 
-#include "tracer/accel/accel.h"
+#include "tracer/geometry/bounds.h"
+#include "tracer/scene/scene.h"
 
 #include <atomic>
 #include <filesystem>
@@ -15,15 +16,13 @@
 
 namespace raypick {
 
-// A scene that is ready to be looked at and clicked on.
+// A scene that is ready to be looked at. What rays need is built while it is shown: DocumentTrees.
 struct Document {
     std::filesystem::path file;
-    std::shared_ptr<const Accel> accel;
+    std::shared_ptr<const Scene> scene;
+    Bounds bounds;  // of its finite objects
     std::vector<std::string> warnings;
     double load_seconds = 0.0;
-    double build_seconds = 0.0;
-
-    [[nodiscard]] const Scene& scene() const { return accel->scene(); }
 };
 
 // Why a file could not be opened.
@@ -34,17 +33,13 @@ struct OpenFailure {
 
 using OpenResult = std::variant<Document, OpenFailure>;
 
-enum class OpenStage { reading, building };
-
 struct OpenProgress {
     std::filesystem::path file;
-    OpenStage stage = OpenStage::reading;
-    float fraction = 0.0f;  // of reading
+    float fraction = 0.0f;
     double seconds = 0.0;
 };
 
-// Reads scenes and builds their trees on a thread of its own. No call waits for that thread but the
-// destructor.
+// Reads scenes on a thread of its own. No call waits for that thread but the destructor.
 class DocumentOpener {
 public:
     // `notify` is called from the working thread when a result is ready.

@@ -14,9 +14,8 @@ void FileSaver::save(Image image, const std::filesystem::path& file) {
     start(SaveKind::picture, file, [image = std::move(image), file] { write_image(image, file); });
 }
 
-void FileSaver::save(std::shared_ptr<const Accel> accel, const std::filesystem::path& file) {
-    start(SaveKind::scene, file,
-          [accel = std::move(accel), file] { save_scene(accel->scene(), file); });
+void FileSaver::save(std::shared_ptr<const Scene> scene, const std::filesystem::path& file) {
+    start(SaveKind::scene, file, [scene = std::move(scene), file] { save_scene(*scene, file); });
 }
 
 void FileSaver::start(SaveKind kind, const std::filesystem::path& file,

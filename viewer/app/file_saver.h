@@ -1,8 +1,8 @@
 // Writes pictures and scenes beside the running window.
 #pragma once
 
-#include "tracer/accel/accel.h"
 #include "tracer/render/image.h"
+#include "tracer/scene/scene.h"
 
 #include <filesystem>
 #include <functional>
@@ -28,8 +28,8 @@ public:
 
     // Begin to write; nothing happens while another file is being written.
     void save(Image image, const std::filesystem::path& file);
-    // The scene that `accel` holds, as save_scene writes it.
-    void save(std::shared_ptr<const Accel> accel, const std::filesystem::path& file);
+    // As save_scene writes it.
+    void save(std::shared_ptr<const Scene> scene, const std::filesystem::path& file);
     [[nodiscard]] bool busy() const { return result_.valid(); }
     // The result, once.
     std::optional<SaveResult> take_result();

@@ -30,8 +30,7 @@ void draw_centred(const char* text) {
 }
 
 std::string describe(const OpenProgress& progress) {
-    const char* what = progress.stage == OpenStage::reading ? "reading" : "building the tree";
-    return fmt::format("{}  {:.1f} s", what, progress.seconds);
+    return fmt::format("reading  {:.1f} s", progress.seconds);
 }
 
 }  // namespace
@@ -95,10 +94,7 @@ LoadCard draw_load_card(const OpenProgress& progress, const UiRegion& view, bool
     ImGui::SetNextWindowSize(ImVec2(width, 0.0f));
     ImGui::Begin("##load", nullptr, kFixed | ImGuiWindowFlags_AlwaysAutoResize);
     draw_text(fmt::format("Opening {}", progress.file.filename().string()));
-    // Half the bar for reading; how far the tree is nobody knows.
-    const bool reading = progress.stage == OpenStage::reading;
-    ImGui::ProgressBar(reading ? 0.5f * progress.fraction : 0.5f, ImVec2(-1.0f, 0.0f),
-                       describe(progress).c_str());
+    ImGui::ProgressBar(progress.fraction, ImVec2(-1.0f, 0.0f), describe(progress).c_str());
     LoadCard card;
     card.cancelled = ImGui::Button("Cancel");
     const ImVec2 corner = ImGui::GetWindowPos();

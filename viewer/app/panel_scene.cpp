@@ -12,14 +12,29 @@ std::string counted(double count, const char* one, const char* many) {
     return fmt::format("{} {}", short_count(count), count == 1.0 ? one : many);
 }
 
-std::string counts(const Scene& scene, const AccelStats& stats) {
+std::string counts(const Scene& scene) {
+    std::size_t triangles = 0;
+    for (const Mesh& mesh : scene.meshes)
+        triangles += mesh.triangles.size();
     const auto size = [](const auto& list) { return static_cast<double>(list.size()); };
     const std::string lights =
         scene.lights.empty() ? "headlight" : counted(size(scene.lights), "light", "lights");
     return fmt::format(
         "{}, {}, {}, {}", counted(size(scene.objects), "object", "objects"),
-        counted(static_cast<double>(stats.triangles), "stored triangle", "stored triangles"),
+        counted(static_cast<double>(triangles), "stored triangle", "stored triangles"),
         counted(size(scene.materials), "material", "materials"), lights);
+}
+
+// Which of its trees there are.
+std::string tree_text(const BuildProgress& trees) {
+    if (!trees.accel) {
+        return trees.error.empty() ? "building the first tree" : "no tree: " + trees.error;
+    }
+    const std::string first = "first tree in " + short_time(trees.first_seconds);
+    if (trees.quality == TreeQuality::many_rays) {
+        return fmt::format("{}, the better one in {}", first, short_time(trees.many_rays_seconds));
+    }
+    return first + (trees.error.empty() ? ", building a better one" : "; " + trees.error);
 }
 
 void draw_warnings(const std::vector<std::string>& warnings) {
@@ -37,17 +52,16 @@ void draw_warnings(const std::vector<std::string>& warnings) {
 
 }  // namespace
 
-void draw_scene_panel(const Document* document) {
+void draw_scene_panel(const Document* document, const BuildProgress& trees) {
     draw_heading("Scene");
     if (document == nullptr) {
         draw_dim_text("Nothing is open.");
         return;
     }
-    const Scene& scene = document->scene();
     draw_text(document->file.filename().string());
-    draw_dim_text(counts(scene, document->accel->stats()));
-    draw_dim_text(fmt::format("read in {}, tree in {}", short_time(document->load_seconds),
-                              short_time(document->build_seconds)));
+    draw_dim_text(counts(*document->scene));
+    draw_dim_text(fmt::format("read in {}", short_time(document->load_seconds)));
+    draw_dim_text(tree_text(trees));
     if (!document->warnings.empty()) draw_warnings(document->warnings);
 }
 

@@ -145,7 +145,7 @@ std::optional<TraceRequest> draw_trace_panel(const TracePanel& panel) {
         if (panel.status.state == PreviewStatus::State::failed) {
             draw_error_text(panel.status.error);
         } else if (panel.status.state == PreviewStatus::State::off) {
-            draw_dim_text("Begins once a scene is open.");
+            draw_dim_text("Begins once the first tree is there.");
         } else if (draw_progress(panel.status)) {
             request = TraceRequest::cancel;
         }

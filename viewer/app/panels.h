@@ -3,6 +3,7 @@
 #pragma once
 
 #include "picking/selection.h"
+#include "tracer/accel/background_build.h"
 #include "viewer/app/document.h"
 #include "viewer/app/layout.h"
 #include "viewer/app/preview.h"
@@ -12,8 +13,8 @@
 
 namespace raypick {
 
-// What is open: name, counts, times, warnings. `document` may be nullptr.
-void draw_scene_panel(const Document* document);
+// What is open: name, counts, times, its trees, warnings. `document` may be nullptr.
+void draw_scene_panel(const Document* document, const BuildProgress& trees);
 
 // What the last click found, or how to begin.
 std::optional<Command> draw_selection_panel(const Selection& selection);

@@ -12,13 +12,18 @@ constexpr std::chrono::milliseconds kUploadInterval{80};
 
 }  // namespace
 
+bool PreviewView::same_scene(const PreviewView& other) const {
+    if (!accel || !other.accel) return accel == other.accel;
+    return accel->shared_scene() == other.accel->shared_scene();
+}
+
 void Preview::want(const PreviewView& view) {
     if (cancelled_ == view) return;
     cancelled_.reset();
     wanted_ = view;
     const bool have_job = job_ || !error_.empty();
     if (have_job && job_view_ == view) return;
-    const bool may_replace = !job_ || job_shown() || job_ended_ || job_view_.accel != view.accel;
+    const bool may_replace = !job_ || job_shown() || job_ended_ || !job_view_.same_scene(view);
     if (may_replace) start(view);
 }
 

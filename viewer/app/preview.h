@@ -13,14 +13,19 @@
 
 namespace raypick {
 
-// What a frame is traced of. Two equal ones give the same picture.
+// What a frame is traced of. Two equal ones give the same picture: whichever of a scene's trees the
+// rays go down, they hit the same.
 struct PreviewView {
     std::shared_ptr<const Accel> accel;
     Camera camera;
     ImageSize size;
     RenderSettings settings;
 
-    friend bool operator==(const PreviewView&, const PreviewView&) = default;
+    [[nodiscard]] bool same_scene(const PreviewView& other) const;
+    friend bool operator==(const PreviewView& a, const PreviewView& b) {
+        return a.same_scene(b) && a.camera == b.camera && a.size == b.size &&
+               a.settings == b.settings;
+    }
 };
 
 struct PreviewStatus {

@@ -18,7 +18,7 @@ namespace raypick {
 
 // What a frame showed.
 struct ShownFrame {
-    std::shared_ptr<const Accel> accel;
+    std::shared_ptr<const Scene> scene;
     Camera camera;
     ImageSize size;
     bool traced = false;
@@ -26,12 +26,21 @@ struct ShownFrame {
     friend bool operator==(const ShownFrame&, const ShownFrame&) = default;
 };
 
+// What a click asks: which ray, through what that frame showed.
+struct PickQuestion {
+    ShownFrame frame;
+    Pixel pixel;  // whose sample was shown there
+};
+
 // Needs a current OpenGL 3.3 core context, the same one in every call.
 class SceneView {
 public:
-    // Shows another scene from this camera.
-    void set_scene(std::shared_ptr<const Accel> accel, const Camera& camera);
-    [[nodiscard]] bool empty() const { return accel_ == nullptr; }
+    // Shows another scene from this camera. `bounds` are those of its finite objects.
+    void set_scene(std::shared_ptr<const Scene> scene, const Bounds& bounds, const Camera& camera);
+    // What rays go through from now on, of the scene that is shown. Without it, as a new scene is,
+    // nothing is traced and no pick answered. A frame that is being traced goes on with the one it
+    // began with.
+    void set_accel(std::shared_ptr<const Accel> accel);
     // What of the scene OpenGL shows coarser than it is.
     [[nodiscard]] std::vector<std::string> warnings() const { return rasterizer_.warnings(); }
 
@@ -48,8 +57,13 @@ public:
 
     // What the last prepared frame shows; nothing if the view is empty.
     [[nodiscard]] const std::optional<ShownFrame>& shown() const { return shown_; }
-    // What is under a pixel of it: the pick of the pixel whose ray is shown there.
+    // What is under a pixel of it: the pick of the pixel whose ray is shown there. Nothing outside
+    // the view, and as long as there is no Accel.
     [[nodiscard]] std::optional<PixelPick> pick(Pixel pixel) const;
+    // The same in two steps: the question belongs to the frame that is shown now, the answer may
+    // come later.
+    [[nodiscard]] std::optional<PickQuestion> question(Pixel pixel) const;
+    [[nodiscard]] std::optional<PixelPick> answer(const PickQuestion& question) const;
     // The pixel whose sample is shown at `pixel`: another one while a traced preview is coarse.
     [[nodiscard]] Pixel sampled_pixel(Pixel pixel) const;
     // The shown picture itself.
@@ -66,7 +80,9 @@ private:
     void rasterise(ImageSize size);
     [[nodiscard]] bool shows_trace(ImageSize size) const;
 
-    std::shared_ptr<const Accel> accel_;
+    std::shared_ptr<const Scene> scene_;
+    Bounds bounds_;
+    std::shared_ptr<const Accel> accel_;  // of scene_; nullptr: not yet there
     OrbitCamera camera_;
     Rasterizer rasterizer_;
     Presenter presenter_;
