@@ -3,13 +3,13 @@
 #include "tracer/parallel/parallel.h"
 #include "tracer/render/pixel_tracer.h"
 #include "tracer/render/tiles.h"
+#include "tracer/render/trace_tile.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <exception>
 #include <mutex>
-#include <new>
 #include <thread>
 #include <utility>
 
@@ -18,15 +18,6 @@ namespace raypick {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-// The centre of the coarse block that holds a pixel; blocks are cut off at the image's edge.
-Pixel coarse_sample(Pixel pixel, ImageSize size) {
-    constexpr int kStep = RenderJob::kCoarseStep;
-    const auto along = [](int i, int count) {
-        return std::min(i / kStep * kStep + kStep / 2, count - 1);
-    };
-    return {along(pixel.row, size.rows), along(pixel.col, size.cols)};
-}
 
 // How many passes over the image show the samples one by one.
 int pass_count(const PixelTracer& tracer, bool progressive) {
@@ -89,17 +80,9 @@ struct RenderJob::State {
 
     void coarse_tile(const Tile& tile);
     void show_coarse();
-    void centre_tile(const Tile& tile);
-    void corner_tile(const Tile& tile);
     void sample_passes();
     void choose_refined(const Tile& tile);
     void sample_tile(const Tile& tile, int first, int end);
-    void add_samples(const Tile& tile, const std::vector<Pixel>& pixels, int sample,
-                     std::vector<PixelMean>& sums, RayCounts& counts) const;
-    void look_at_centres(TilePart& part) const;
-    [[nodiscard]] std::vector<EyeRay> centre_rays(const Tile& tile,
-                                                  const std::vector<Pixel>& pixels) const;
-    [[nodiscard]] std::vector<glm::vec3> corner_colours(const Tile& tile, RayCounts& counts) const;
     [[nodiscard]] std::vector<Pixel> sampled_pixels(const Tile& tile) const;
     [[nodiscard]] TilePart begun_part(const Tile& tile, bool first_pass) const;
 
@@ -142,16 +125,22 @@ void RenderJob::State::run_passes() {
     }
     switch (tracer.settings().sampling) {
         case Sampling::centre:
-            each_tile([this](const Tile& tile) { centre_tile(tile); });
+            each_tile([this](const Tile& tile) {
+                publish(trace_centres(tracer, tile, stop.get_token()), Piece::whole);
+            });
             break;
         case Sampling::corners:
-            each_tile([this](const Tile& tile) { corner_tile(tile); });
+            each_tile([this](const Tile& tile) {
+                publish(trace_corners(tracer, tile, stop.get_token()), Piece::whole);
+            });
             break;
         case Sampling::stratified:
             sample_passes();
             break;
         case Sampling::adaptive:
-            each_tile([this](const Tile& tile) { centre_tile(tile); });
+            each_tile([this](const Tile& tile) {
+                publish(trace_centres(tracer, tile, stop.get_token()), Piece::whole);
+            });
             if (stopped()) return;
             refining.resize(image.size.pixel_count());
             each_tile([this](const Tile& tile) { choose_refined(tile); });
@@ -167,100 +156,9 @@ void RenderJob::State::show_coarse() {
 }
 
 void RenderJob::State::coarse_tile(const Tile& tile) {
-    TilePart part(tile);
-    RayCounts not_counted;  // these pixels are traced again
-    const ImageSize size = part.image.size;
-    std::vector<EyeRay> eyes;
-    for (int row = 0; row < size.rows; row += kCoarseStep) {
-        for (int col = 0; col < size.cols; col += kCoarseStep)
-            eyes.push_back(
-                tracer.centre_ray(coarse_sample(tile.in_image({row, col}), tracer.size())));
-    }
-    std::vector<TracedRay> traced(eyes.size());
-    tracer.trace(eyes, traced, not_counted, stop.get_token());
-    const int blocks = (size.cols + kCoarseStep - 1) / kCoarseStep;
-    for (int row = 0; row < size.rows; ++row) {
-        for (int col = 0; col < size.cols; ++col) {
-            const int block = row / kCoarseStep * blocks + col / kCoarseStep;
-            part.set(size.index({row, col}), traced[static_cast<std::size_t>(block)]);
-        }
-    }
+    TilePart part = trace_blocks(tracer, tile, kCoarseStep, stop.get_token());
+    part.rays = {};  // these pixels are traced again
     publish(part, Piece::coarse);
-}
-
-void RenderJob::State::centre_tile(const Tile& tile) {
-    TilePart part(tile);
-    const std::vector<Pixel> pixels = pixels_in_blocks(part.image.size);
-    std::vector<TracedRay> traced(pixels.size());
-    tracer.trace(centre_rays(tile, pixels), traced, part.rays, stop.get_token());
-    for (std::size_t i = 0; i < pixels.size(); ++i)
-        part.set(part.image.size.index(pixels[i]), traced[i]);
-    publish(part, Piece::whole);
-}
-
-std::vector<EyeRay> RenderJob::State::centre_rays(const Tile& tile,
-                                                  const std::vector<Pixel>& pixels) const {
-    std::vector<EyeRay> eyes(pixels.size());
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-        // In place: copies of what was just put together make processors wait for the parts.
-        ::new (static_cast<void*>(&eyes[i])) EyeRay(tracer.centre_ray(tile.in_image(pixels[i])));
-    }
-    return eyes;
-}
-
-// All channels but the colour.
-void RenderJob::State::look_at_centres(TilePart& part) const {
-    const std::vector<Pixel> pixels = pixels_in_blocks(part.image.size);
-    std::vector<TracedRay> seen(pixels.size());
-    tracer.look(centre_rays(part.tile, pixels), seen, stop.get_token());
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-        seen[i].colour = glm::vec3(0.0f);
-        part.set(part.image.size.index(pixels[i]), seen[i]);
-    }
-}
-
-// The colours at the corners of the tile's pixels. Corners that two tiles share are traced by both,
-// which costs a sixteenth, and counted by one.
-std::vector<glm::vec3> RenderJob::State::corner_colours(const Tile& tile, RayCounts& counts) const {
-    const ImageSize size = tile.size();
-    const ImageSize corners{size.rows + 1, size.cols + 1};
-    std::vector<glm::vec3> colours(corners.pixel_count());
-    RayCounts not_counted;
-    for (const bool own : {true, false}) {
-        std::vector<std::size_t> places;
-        std::vector<EyeRay> eyes;
-        for (const Pixel& pixel : pixels_in_blocks(corners)) {
-            const Pixel corner = tile.in_image(pixel);
-            const bool is_own = (pixel.row < size.rows || corner.row == tracer.size().rows) &&
-                                (pixel.col < size.cols || corner.col == tracer.size().cols);
-            if (is_own != own) continue;
-            places.push_back(corners.index(pixel));
-            eyes.push_back(tracer.corner_ray(corner));
-        }
-        std::vector<TracedRay> traced(eyes.size());
-        tracer.trace(eyes, traced, own ? counts : not_counted, stop.get_token());
-        for (std::size_t i = 0; i < places.size(); ++i)
-            colours[places[i]] = traced[i].colour;
-    }
-    return colours;
-}
-
-void RenderJob::State::corner_tile(const Tile& tile) {
-    TilePart part(tile);
-    const ImageSize size = part.image.size;
-    const ImageSize corners{size.rows + 1, size.cols + 1};
-    const std::vector<glm::vec3> colours = corner_colours(tile, part.rays);
-    look_at_centres(part);
-    for (int row = 0; row < size.rows; ++row) {
-        for (int col = 0; col < size.cols; ++col) {
-            part.set_colour(size.index({row, col}),
-                            0.25f * (colours[corners.index({row, col})] +
-                                     colours[corners.index({row, col + 1})] +
-                                     colours[corners.index({row + 1, col})] +
-                                     colours[corners.index({row + 1, col + 1})]));
-        }
-    }
-    publish(part, Piece::whole);
 }
 
 void RenderJob::State::sample_passes() {
@@ -287,7 +185,7 @@ void RenderJob::State::choose_refined(const Tile& tile) {
 TilePart RenderJob::State::begun_part(const Tile& tile, bool first_pass) const {
     TilePart part(tile);
     if (first_pass) {
-        look_at_centres(part);
+        look_at_centres(tracer, part, stop.get_token());
         return part;
     }
     const ImageSize size = part.image.size;
@@ -323,27 +221,12 @@ void RenderJob::State::sample_tile(const Tile& tile, int first, int end) {
     for (std::size_t i = 0; i < pixels.size() && !means.empty(); ++i)
         sums[i] = means[in_image(i)];
     for (int sample = first; sample < end && !stopped(); ++sample)
-        add_samples(tile, pixels, sample, sums, part.rays);
+        add_samples(tracer, tile, pixels, sample, sums, part.rays, stop.get_token());
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         if (!means.empty()) means[in_image(i)] = sums[i];
         part.set_colour(part.image.size.index(pixels[i]), sums[i].colour(tracer.filter()));
     }
     publish(part, first_pass ? Piece::whole : Piece::colour);
-}
-
-void RenderJob::State::add_samples(const Tile& tile, const std::vector<Pixel>& pixels, int sample,
-                                   std::vector<PixelMean>& sums, RayCounts& counts) const {
-    std::vector<EyeRay> eyes;
-    std::vector<std::uint8_t> negative;
-    for (const Pixel& pixel : pixels) {
-        const SampleRay ray = tracer.sample_ray(tile.in_image(pixel), sample);
-        eyes.push_back(ray.eye);
-        negative.push_back(ray.negative ? 1 : 0);
-    }
-    std::vector<TracedRay> traced(eyes.size());
-    tracer.trace(eyes, traced, counts, stop.get_token());
-    for (std::size_t i = 0; i < eyes.size(); ++i)
-        sums[i].add(traced[i].colour, negative[i] != 0);
 }
 
 void RenderJob::State::publish(const TilePart& part, Piece piece) {
@@ -383,7 +266,7 @@ void RenderJob::State::count_broken(const TilePart& part) {
 
 Pixel FrameSnapshot::sampled_pixel(Pixel pixel) const {
     if (!image.size.contains(pixel) || traced[image.size.index(pixel)] != 0) return pixel;
-    return coarse_sample(pixel, image.size);
+    return coarse_sample(pixel, RenderJob::kCoarseStep, image.size);
 }
 
 RenderJob::RenderJob(std::shared_ptr<const Accel> accel, const Camera& camera, ImageSize size,

@@ -1,0 +1,133 @@
+#include "tracer/render/trace_tile.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <new>
+
+namespace raypick {
+
+namespace {
+
+std::vector<EyeRay> centre_rays(const PixelTracer& tracer, const Tile& tile,
+                                const std::vector<Pixel>& pixels) {
+    std::vector<EyeRay> eyes(pixels.size());
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        // In place: copies of what was just put together make processors wait for the parts.
+        ::new (static_cast<void*>(&eyes[i])) EyeRay(tracer.centre_ray(tile.in_image(pixels[i])));
+    }
+    return eyes;
+}
+
+// The colours at the corners of the tile's pixels.
+std::vector<glm::vec3> corner_colours(const PixelTracer& tracer, const Tile& tile,
+                                      RayCounts& counts, const std::stop_token& stop) {
+    const ImageSize size = tile.size();
+    const ImageSize corners{size.rows + 1, size.cols + 1};
+    std::vector<glm::vec3> colours(corners.pixel_count());
+    RayCounts not_counted;
+    for (const bool own : {true, false}) {
+        std::vector<std::size_t> places;
+        std::vector<EyeRay> eyes;
+        for (const Pixel& pixel : pixels_in_blocks(corners)) {
+            const Pixel corner = tile.in_image(pixel);
+            const bool is_own = (pixel.row < size.rows || corner.row == tracer.size().rows) &&
+                                (pixel.col < size.cols || corner.col == tracer.size().cols);
+            if (is_own != own) continue;
+            places.push_back(corners.index(pixel));
+            eyes.push_back(tracer.corner_ray(corner));
+        }
+        std::vector<TracedRay> traced(eyes.size());
+        tracer.trace(eyes, traced, own ? counts : not_counted, stop);
+        for (std::size_t i = 0; i < places.size(); ++i)
+            colours[places[i]] = traced[i].colour;
+    }
+    return colours;
+}
+
+}  // namespace
+
+Pixel coarse_sample(Pixel pixel, int step, ImageSize size) {
+    const auto along = [step](int i, int count) {
+        return std::min(i / step * step + step / 2, count - 1);
+    };
+    return {along(pixel.row, size.rows), along(pixel.col, size.cols)};
+}
+
+TilePart trace_blocks(const PixelTracer& tracer, const Tile& tile, int step,
+                      const std::stop_token& stop) {
+    TilePart part(tile);
+    const ImageSize size = part.image.size;
+    std::vector<EyeRay> eyes;
+    for (int row = 0; row < size.rows; row += step) {
+        for (int col = 0; col < size.cols; col += step) {
+            eyes.push_back(
+                tracer.centre_ray(coarse_sample(tile.in_image({row, col}), step, tracer.size())));
+        }
+    }
+    std::vector<TracedRay> traced(eyes.size());
+    tracer.trace(eyes, traced, part.rays, stop);
+    const int blocks = (size.cols + step - 1) / step;
+    for (int row = 0; row < size.rows; ++row) {
+        for (int col = 0; col < size.cols; ++col) {
+            const int block = row / step * blocks + col / step;
+            part.set(size.index({row, col}), traced[static_cast<std::size_t>(block)]);
+        }
+    }
+    return part;
+}
+
+TilePart trace_centres(const PixelTracer& tracer, const Tile& tile, const std::stop_token& stop) {
+    TilePart part(tile);
+    const std::vector<Pixel> pixels = pixels_in_blocks(part.image.size);
+    std::vector<TracedRay> traced(pixels.size());
+    tracer.trace(centre_rays(tracer, tile, pixels), traced, part.rays, stop);
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+        part.set(part.image.size.index(pixels[i]), traced[i]);
+    return part;
+}
+
+void look_at_centres(const PixelTracer& tracer, TilePart& part, const std::stop_token& stop) {
+    const std::vector<Pixel> pixels = pixels_in_blocks(part.image.size);
+    std::vector<TracedRay> seen(pixels.size());
+    tracer.look(centre_rays(tracer, part.tile, pixels), seen, stop);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        seen[i].colour = glm::vec3(0.0f);
+        part.set(part.image.size.index(pixels[i]), seen[i]);
+    }
+}
+
+TilePart trace_corners(const PixelTracer& tracer, const Tile& tile, const std::stop_token& stop) {
+    TilePart part(tile);
+    const ImageSize size = part.image.size;
+    const ImageSize corners{size.rows + 1, size.cols + 1};
+    const std::vector<glm::vec3> colours = corner_colours(tracer, tile, part.rays, stop);
+    look_at_centres(tracer, part, stop);
+    for (int row = 0; row < size.rows; ++row) {
+        for (int col = 0; col < size.cols; ++col) {
+            part.set_colour(size.index({row, col}),
+                            0.25f * (colours[corners.index({row, col})] +
+                                     colours[corners.index({row, col + 1})] +
+                                     colours[corners.index({row + 1, col})] +
+                                     colours[corners.index({row + 1, col + 1})]));
+        }
+    }
+    return part;
+}
+
+void add_samples(const PixelTracer& tracer, const Tile& tile, const std::vector<Pixel>& pixels,
+                 int sample, std::vector<PixelMean>& sums, RayCounts& counts,
+                 const std::stop_token& stop) {
+    std::vector<EyeRay> eyes;
+    std::vector<std::uint8_t> negative;
+    for (const Pixel& pixel : pixels) {
+        const SampleRay ray = tracer.sample_ray(tile.in_image(pixel), sample);
+        eyes.push_back(ray.eye);
+        negative.push_back(ray.negative ? 1 : 0);
+    }
+    std::vector<TracedRay> traced(eyes.size());
+    tracer.trace(eyes, traced, counts, stop);
+    for (std::size_t i = 0; i < eyes.size(); ++i)
+        sums[i].add(traced[i].colour, negative[i] != 0);
+}
+
+}  // namespace raypick
