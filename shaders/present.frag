@@ -4,6 +4,8 @@ uniform usampler2D object;
 uniform ivec2 frame_size;      // of the textures: columns and rows
 uniform vec2 view_origin;      // bottom left corner of the view in the framebuffer
 uniform vec2 view_size;        // pixels
+uniform int block;  // side of the square of pixels that a texel fills, from the view's top left
+                    // corner on; 0: the frame is stretched over the view
 uniform usamplerBuffer selected;  // ascending ids
 uniform int selected_count;
 uniform uint hovered;  // kNoObject: none
@@ -24,6 +26,11 @@ float srgb_from_linear(float linear) {
 
 // The texel shown at a pixel of the view (the frame may be coarser than the view).
 ivec2 texel_at(vec2 pixel) {
+    if (block > 0) {
+        int row = int(view_size.y) - 1 - int(floor(pixel.y));
+        ivec2 texel = ivec2(int(floor(pixel.x)) / block, frame_size.y - 1 - row / block);
+        return clamp(texel, ivec2(0), frame_size - 1);
+    }
     return clamp(ivec2(floor(pixel * vec2(frame_size) / view_size)), ivec2(0), frame_size - 1);
 }
 

@@ -192,7 +192,7 @@ TEST(Chance, OneTwoAndFiveThreadsGiveTheSameBits) {
             const RenderedFrame many = render(accel, front_camera(), kSize, settings);
             EXPECT_TRUE(same_bits(many.image.colour, one.image.colour));
             EXPECT_EQ(many.rays, one.rays);
-            RenderJob watched(accel, front_camera(), kSize, settings, true);
+            RenderJob watched(accel, front_camera(), kSize, settings);
             watched.wait();
             FrameSnapshot frame;
             ASSERT_TRUE(watched.snapshot(frame));

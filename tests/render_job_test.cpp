@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstring>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <thread>
 
@@ -195,7 +196,7 @@ TEST(RenderJob, ProgressGrowsToOne) {
         if (job.snapshot(frame)) {
             ++changes;
             EXPECT_GT(frame.version, before);
-            EXPECT_EQ(frame.image.size, (ImageSize{240, 320}));
+            EXPECT_EQ(frame.size, (ImageSize{240, 320}));
         } else {
             EXPECT_EQ(frame.version, before);
         }
@@ -232,6 +233,69 @@ TEST(RenderJob, TheCoarseImageComesFirst) {
     EXPECT_LT(job.progress().fraction, 0.5) << "the whole view stood long before the end";
 }
 
+RenderPlan coarse_by(int step) {
+    RenderPlan plan;
+    plan.coarse_step = step;
+    return plan;
+}
+
+TEST(RenderJob, TheImageIsTheSameForAnyCoarseImageBeforeIt) {
+    const auto accel = shared_accel(mixed_scene());
+    for (const Sampling sampling :
+         {Sampling::centre, Sampling::corners, Sampling::stratified, Sampling::adaptive}) {
+        RenderSettings settings;
+        settings.sampling = sampling;
+        settings.samples = 2;
+        const RenderedFrame wanted = render(accel, mixed_camera(), kOdd, settings);
+        for (const int step : {1, 2, 3, 5, 8, 13, 16, 200}) {
+            SCOPED_TRACE(testing::Message() << static_cast<int>(sampling) << ' ' << step);
+            RenderJob job(accel, mixed_camera(), kOdd, settings, coarse_by(step));
+            job.wait();
+            EXPECT_EQ(job.progress().rays, wanted.rays) << "no ray is traced twice";
+            FrameSnapshot frame;
+            ASSERT_TRUE(job.snapshot(frame));
+            expect_same(frame.image, wanted.image);
+            expect_same(frame.whole(), wanted.image);
+        }
+    }
+}
+
+// Stopped at the coarse image, what is shown is the final image's pixels, each over its block.
+TEST(RenderJob, TheCoarseImageIsMadeOfTheFinalOnesPixels) {
+    const auto accel = shared_accel(mixed_scene());
+    const Image wanted = render(accel, mixed_camera(), kOdd, {}).image;
+    for (const int step : {1, 3, 8, 200}) {
+        SCOPED_TRACE(step);
+        RenderJob* self = nullptr;
+        std::mutex made;
+        std::unique_lock lock(made);
+        RenderPlan plan = coarse_by(step);
+        plan.on_coarse = [&] {
+            const std::lock_guard wait(made);
+            self->cancel();
+        };
+        RenderJob job(accel, mixed_camera(), kOdd, {}, plan);
+        self = &job;
+        lock.unlock();
+        job.wait();
+        FrameSnapshot frame;
+        ASSERT_TRUE(job.snapshot(frame));
+        EXPECT_TRUE(frame.traced.empty());
+        EXPECT_EQ(frame.image.size, (ImageSize{(97 + step - 1) / step, (131 + step - 1) / step}));
+        EXPECT_GT(job.progress().coarse_seconds, 0.0);
+        const Image whole = frame.whole();
+        ASSERT_EQ(whole.size, kOdd);
+        for (int row = 0; row < kOdd.rows; ++row) {
+            for (int col = 0; col < kOdd.cols; ++col) {
+                const std::size_t from = kOdd.index(frame.sampled_pixel({row, col}));
+                const std::size_t at = kOdd.index({row, col});
+                ASSERT_EQ(whole.colour[at], wanted.colour[from]) << row << ' ' << col;
+                ASSERT_EQ(whole.object[at], wanted.object[from]) << row << ' ' << col;
+            }
+        }
+    }
+}
+
 // What a snapshot shows at a pixel is the sample of sampled_pixel, at any moment.
 TEST(RenderJob, SampledPixelIsWhoseSampleIsShown) {
     const ImageSize size{203, 301};
@@ -245,17 +309,17 @@ TEST(RenderJob, SampledPixelIsWhoseSampleIsShown) {
     int coarse = 0;
     while (!job.progress().finished) {
         if (!job.snapshot(frame)) continue;
+        const Image image = frame.whole();
         for (int i = 0; i < 20; ++i) {
             const Pixel pixel{static_cast<int>(random.below(203)),
                               static_cast<int>(random.below(301))};
             const Pixel shown = frame.sampled_pixel(pixel);
             ASSERT_TRUE(size.contains(shown));
-            constexpr int kStep = RenderJob::kCoarseStep;
-            EXPECT_EQ(shown.row / kStep, pixel.row / kStep);
-            EXPECT_EQ(shown.col / kStep, pixel.col / kStep);
+            EXPECT_EQ(shown.row / frame.step, pixel.row / frame.step);
+            EXPECT_EQ(shown.col / frame.step, pixel.col / frame.step);
             if (shown != pixel) ++coarse;
             const std::optional<Hit> pick = accel->intersect(camera_ray(camera, size, shown));
-            EXPECT_EQ(frame.image.object[size.index(pixel)], pick ? pick->object : kNoObject)
+            EXPECT_EQ(image.object[size.index(pixel)], pick ? pick->object : kNoObject)
                 << pixel.row << ' ' << pixel.col;
         }
     }

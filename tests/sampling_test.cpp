@@ -73,7 +73,7 @@ void expect_same(const Image& a, const Image& b) {
 
 Image watched_to_the_end(const std::shared_ptr<const Accel>& accel,
                          const RenderSettings& settings) {
-    RenderJob job(accel, ball_camera(), kSize, settings, true);
+    RenderJob job(accel, ball_camera(), kSize, settings);
     job.wait();
     FrameSnapshot frame;
     job.snapshot(frame);

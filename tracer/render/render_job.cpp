@@ -38,18 +38,15 @@ int pass_count(const PixelTracer& tracer, bool progressive) {
 
 struct RenderJob::State {
     State(std::shared_ptr<const Accel> accel, const Camera& camera, ImageSize size,
-          const RenderSettings& settings, bool watched)
+          const RenderSettings& settings, RenderPlan how)
         : tracer(std::move(accel), camera, size, settings),
-          progressive(watched),
-          passes(pass_count(tracer, watched)),
+          plan(std::move(how)),
+          passes(pass_count(tracer, plan.progressive)),
           tiles(tiles_from_centre(size)),
-          start(Clock::now()),
-          image(make_image(size)),
-          done(size.pixel_count(), 0),
-          broken(size.pixel_count(), 0) {}
+          start(Clock::now()) {}
 
     const PixelTracer tracer;
-    const bool progressive;
+    const RenderPlan plan;
     const int passes;
     const std::vector<Tile> tiles;
     const Clock::time_point start;
@@ -60,6 +57,8 @@ struct RenderJob::State {
     std::vector<std::uint8_t> refining;  // of adaptive sampling: pixels worth more samples
 
     mutable std::mutex mutex;  // guards what follows, up to `failure`
+    CoarseImage coarse;
+    bool whole = false;  // the image is there and no longer empty; before, it is the workers' own
     Image image;
     std::vector<std::uint8_t> done;    // per pixel: shows its own samples
     std::vector<std::uint8_t> broken;  // per pixel: came out as no number
@@ -69,6 +68,7 @@ struct RenderJob::State {
     std::uint64_t version = 0;
     bool finished = false;
     double seconds = 0.0;
+    double coarse_seconds = 0.0;
     std::exception_ptr failure;
 
     std::jthread thread;  // last: joined before anything else goes
@@ -76,22 +76,34 @@ struct RenderJob::State {
     void run();
     void run_passes();
     template <typename Body>
-    void each_tile(const Body& body);
+    void each_tile(const std::vector<Tile>& of, const Body& body);
+    template <typename Body>
+    void each_tile(const Body& body) {
+        each_tile(tiles, body);
+    }
 
-    void coarse_tile(const Tile& tile);
-    void show_coarse();
+    void trace_coarse();
+    void show_coarse(const RayCounts& counts);
+    void begin_image();
+    void trace_centre_pass();
     void sample_passes();
     void choose_refined(const Tile& tile);
     void sample_tile(const Tile& tile, int first, int end);
     [[nodiscard]] std::vector<Pixel> sampled_pixels(const Tile& tile) const;
     [[nodiscard]] TilePart begun_part(const Tile& tile, bool first_pass) const;
 
-    enum class Piece { coarse, whole, colour };
+    // The coarse image's rays are some of the first pass's.
+    [[nodiscard]] bool coarse_counts() const {
+        return tracer.settings().sampling == Sampling::centre ||
+               tracer.settings().sampling == Sampling::adaptive;
+    }
+
+    enum class Piece { whole, colour };
     void publish(const TilePart& part, Piece piece);
     void count_broken(const TilePart& part);
     [[nodiscard]] bool stopped() const { return stop.stop_requested(); }
     [[nodiscard]] std::size_t work() const {
-        return image.size.pixel_count() * static_cast<std::size_t>(passes);
+        return tracer.size().pixel_count() * static_cast<std::size_t>(passes);
     }
     [[nodiscard]] double elapsed() const {
         return std::chrono::duration<double>(Clock::now() - start).count();
@@ -99,9 +111,9 @@ struct RenderJob::State {
 };
 
 template <typename Body>
-void RenderJob::State::each_tile(const Body& body) {
-    parallel_for(tiles.size(), tracer.settings().threads, stop.get_token(),
-                 [&](std::size_t i) { body(tiles[i]); });
+void RenderJob::State::each_tile(const std::vector<Tile>& of, const Body& body) {
+    parallel_for(of.size(), tracer.settings().threads, stop.get_token(),
+                 [&](std::size_t i) { body(of[i]); });
 }
 
 void RenderJob::State::run() {
@@ -119,15 +131,13 @@ void RenderJob::State::run() {
 }
 
 void RenderJob::State::run_passes() {
-    if (progressive) {
-        each_tile([this](const Tile& tile) { coarse_tile(tile); });
-        show_coarse();
-    }
+    if (plan.progressive) trace_coarse();
+    if (stopped()) return;
+    begin_image();
+    if (stopped()) return;
     switch (tracer.settings().sampling) {
         case Sampling::centre:
-            each_tile([this](const Tile& tile) {
-                publish(trace_centres(tracer, tile, stop.get_token()), Piece::whole);
-            });
+            trace_centre_pass();
             break;
         case Sampling::corners:
             each_tile([this](const Tile& tile) {
@@ -138,9 +148,7 @@ void RenderJob::State::run_passes() {
             sample_passes();
             break;
         case Sampling::adaptive:
-            each_tile([this](const Tile& tile) {
-                publish(trace_centres(tracer, tile, stop.get_token()), Piece::whole);
-            });
+            trace_centre_pass();
             if (stopped()) return;
             refining.resize(image.size.pixel_count());
             each_tile([this](const Tile& tile) { choose_refined(tile); });
@@ -149,22 +157,60 @@ void RenderJob::State::run_passes() {
     }
 }
 
-void RenderJob::State::show_coarse() {
-    if (stopped()) return;
-    const std::lock_guard lock(mutex);
-    ++version;
+void RenderJob::State::trace_coarse() {
+    // So many blocks make rays that are worth to be traced together.
+    constexpr int kBlocks = 16;
+    {
+        CoarseImage empty(tracer.size(), plan.coarse_step);
+        const std::lock_guard lock(mutex);
+        coarse = std::move(empty);
+    }
+    RayCounts counts;
+    each_tile(tiles_from_centre(coarse.image.size, kBlocks), [&](const Tile& tile) {
+        const TilePart part = trace_blocks(tracer, tile, coarse.step, stop.get_token());
+        const std::lock_guard lock(mutex);
+        copy_tile(part.image, tile, coarse.image);
+        copy_tile(part.broken, tile, coarse.broken, coarse.image.size);
+        counts += part.rays;
+    });
+    if (!stopped()) show_coarse(counts);
 }
 
-void RenderJob::State::coarse_tile(const Tile& tile) {
-    TilePart part = trace_blocks(tracer, tile, kCoarseStep, stop.get_token());
-    part.rays = {};  // these pixels are traced again
-    publish(part, Piece::coarse);
+void RenderJob::State::show_coarse(const RayCounts& counts) {
+    {
+        const std::lock_guard lock(mutex);
+        ++version;
+        coarse_seconds = elapsed();
+        if (coarse_counts()) rays += counts;
+    }
+    if (plan.on_coarse) plan.on_coarse();
+}
+
+// Not before the coarse image is shown: nobody waits for this one so soon.
+void RenderJob::State::begin_image() {
+    const ImageSize size = tracer.size();
+    image = make_image(size);
+    done.assign(size.pixel_count(), 0);
+    broken.assign(size.pixel_count(), 0);
+    if (plan.progressive) {
+        each_tile([this](const Tile& tile) { fill_tile(coarse.image, coarse.step, tile, image); });
+    }
+    if (stopped()) return;
+    const std::lock_guard lock(mutex);
+    whole = true;
+}
+
+void RenderJob::State::trace_centre_pass() {
+    const CoarseImage* known = plan.progressive ? &coarse : nullptr;
+    each_tile([&](const Tile& tile) {
+        publish(trace_centres(tracer, tile, known, stop.get_token()), Piece::whole);
+    });
 }
 
 void RenderJob::State::sample_passes() {
     const int samples = tracer.sample_count();
-    const int step = progressive ? 1 : samples;
-    if (progressive) means.resize(image.size.pixel_count());
+    const int step = plan.progressive ? 1 : samples;
+    if (plan.progressive) means.resize(image.size.pixel_count());
     for (int first = 0; first < samples && !stopped(); first += step)
         each_tile([&](const Tile& tile) { sample_tile(tile, first, first + step); });
 }
@@ -238,8 +284,6 @@ void RenderJob::State::publish(const TilePart& part, Piece piece) {
     } else {
         copy_tile(part.image, tile, image);
     }
-    // Pieces of a coarse image are not shown: what is between them would be black.
-    if (piece == Piece::coarse) return;
     count_broken(part);
     for (int row = tile.row_begin; row < tile.row_end; ++row) {
         const auto first = static_cast<std::ptrdiff_t>(image.size.index({row, tile.col_begin}));
@@ -265,13 +309,21 @@ void RenderJob::State::count_broken(const TilePart& part) {
 }
 
 Pixel FrameSnapshot::sampled_pixel(Pixel pixel) const {
-    if (!image.size.contains(pixel) || traced[image.size.index(pixel)] != 0) return pixel;
-    return coarse_sample(pixel, RenderJob::kCoarseStep, image.size);
+    if (!size.contains(pixel)) return pixel;
+    if (!traced.empty() && traced[size.index(pixel)] != 0) return pixel;
+    return block_sample(block_of(pixel, step), step, size);
+}
+
+Image FrameSnapshot::whole() const {
+    if (image.size == size) return image;
+    Image filled = make_image(size);
+    fill_tile(image, step, {0, size.rows, 0, size.cols}, filled);
+    return filled;
 }
 
 RenderJob::RenderJob(std::shared_ptr<const Accel> accel, const Camera& camera, ImageSize size,
-                     const RenderSettings& settings, bool progressive)
-    : state_(std::make_unique<State>(std::move(accel), camera, size, settings, progressive)) {
+                     const RenderSettings& settings, RenderPlan plan)
+    : state_(std::make_unique<State>(std::move(accel), camera, size, settings, std::move(plan))) {
     state_->thread = std::jthread([state = state_.get()] { state->run(); });
 }
 
@@ -292,12 +344,13 @@ void RenderJob::wait() {
 RenderProgress RenderJob::progress() const {
     const std::lock_guard lock(state_->mutex);
     RenderProgress progress;
-    const std::size_t pixels = state_->image.size.pixel_count();
+    const std::size_t pixels = state_->tracer.size().pixel_count();
     progress.fraction =
         static_cast<double>(state_->done_count) / static_cast<double>(state_->work());
     progress.passes = state_->passes;
     progress.pass = std::min(static_cast<int>(state_->done_count / pixels) + 1, state_->passes);
     progress.seconds = state_->finished ? state_->seconds : state_->elapsed();
+    progress.coarse_seconds = state_->coarse_seconds;
     progress.rays = state_->rays;
     progress.nan_pixels = state_->broken_count;
     progress.version = state_->version;
@@ -311,14 +364,20 @@ bool RenderJob::snapshot(FrameSnapshot& frame) const {
     const std::lock_guard lock(state_->mutex);
     if (frame.version == state_->version || state_->version == 0) return false;
     frame.version = state_->version;
-    frame.image = state_->image;
-    frame.traced = state_->done;
+    frame.size = state_->tracer.size();
+    frame.step = state_->coarse.step;
+    frame.image = state_->whole ? state_->image : state_->coarse.image;
+    if (state_->whole) {
+        frame.traced = state_->done;
+    } else {
+        frame.traced.clear();
+    }
     return true;
 }
 
 Image RenderJob::take_image() {
     wait();
-    return std::move(state_->image);
+    return state_->whole ? std::move(state_->image) : make_image(state_->tracer.size());
 }
 
 const Camera& RenderJob::camera() const {
@@ -330,7 +389,7 @@ ImageSize RenderJob::size() const {
 
 RenderedFrame render(std::shared_ptr<const Accel> accel, const Camera& camera, ImageSize size,
                      const RenderSettings& settings) {
-    RenderJob job(std::move(accel), camera, size, settings, false);
+    RenderJob job(std::move(accel), camera, size, settings, {.progressive = false});
     job.wait();
     RenderedFrame frame;
     const RenderProgress progress = job.progress();

@@ -34,12 +34,12 @@ Tile grown(const Tile& tile, int by, ImageSize size) {
 
 }  // namespace
 
-std::vector<Tile> tiles_from_centre(ImageSize size) {
+std::vector<Tile> tiles_from_centre(ImageSize size, int side) {
     std::vector<Tile> tiles;
-    for (int row = 0; row < size.rows; row += kTileSize) {
-        for (int col = 0; col < size.cols; col += kTileSize) {
-            tiles.push_back({row, std::min(row + kTileSize, size.rows), col,
-                             std::min(col + kTileSize, size.cols)});
+    for (int row = 0; row < size.rows; row += side) {
+        for (int col = 0; col < size.cols; col += side) {
+            tiles.push_back(
+                {row, std::min(row + side, size.rows), col, std::min(col + side, size.cols)});
         }
     }
     std::stable_sort(tiles.begin(), tiles.end(), [&](const Tile& a, const Tile& b) {

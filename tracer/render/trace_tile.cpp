@@ -1,6 +1,5 @@
 #include "tracer/render/trace_tile.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <new>
 
@@ -46,39 +45,30 @@ std::vector<glm::vec3> corner_colours(const PixelTracer& tracer, const Tile& til
 
 }  // namespace
 
-Pixel coarse_sample(Pixel pixel, int step, ImageSize size) {
-    const auto along = [step](int i, int count) {
-        return std::min(i / step * step + step / 2, count - 1);
-    };
-    return {along(pixel.row, size.rows), along(pixel.col, size.cols)};
-}
-
 TilePart trace_blocks(const PixelTracer& tracer, const Tile& tile, int step,
                       const std::stop_token& stop) {
     TilePart part(tile);
-    const ImageSize size = part.image.size;
+    const std::vector<Pixel> blocks = pixels_in_blocks(tile.size());
     std::vector<EyeRay> eyes;
-    for (int row = 0; row < size.rows; row += step) {
-        for (int col = 0; col < size.cols; col += step) {
-            eyes.push_back(
-                tracer.centre_ray(coarse_sample(tile.in_image({row, col}), step, tracer.size())));
-        }
-    }
+    eyes.reserve(blocks.size());
+    for (const Pixel& block : blocks)
+        eyes.push_back(tracer.centre_ray(block_sample(tile.in_image(block), step, tracer.size())));
     std::vector<TracedRay> traced(eyes.size());
     tracer.trace(eyes, traced, part.rays, stop);
-    const int blocks = (size.cols + step - 1) / step;
-    for (int row = 0; row < size.rows; ++row) {
-        for (int col = 0; col < size.cols; ++col) {
-            const int block = row / step * blocks + col / step;
-            part.set(size.index({row, col}), traced[static_cast<std::size_t>(block)]);
-        }
-    }
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+        part.set(part.image.size.index(blocks[i]), traced[i]);
     return part;
 }
 
-TilePart trace_centres(const PixelTracer& tracer, const Tile& tile, const std::stop_token& stop) {
+TilePart trace_centres(const PixelTracer& tracer, const Tile& tile, const CoarseImage* coarse,
+                       const std::stop_token& stop) {
     TilePart part(tile);
-    const std::vector<Pixel> pixels = pixels_in_blocks(part.image.size);
+    std::vector<Pixel> pixels = pixels_in_blocks(part.image.size);
+    if (coarse != nullptr) {
+        std::erase_if(pixels, [&](const Pixel& pixel) {
+            return take_sample(*coarse, tile.in_image(pixel), part, part.image.size.index(pixel));
+        });
+    }
     std::vector<TracedRay> traced(pixels.size());
     tracer.trace(centre_rays(tracer, tile, pixels), traced, part.rays, stop);
     for (std::size_t i = 0; i < pixels.size(); ++i)

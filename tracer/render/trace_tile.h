@@ -1,6 +1,7 @@
 // A tile's rays: from pixels to a part of the image. No threads and no locks here.
 #pragma once
 
+#include "tracer/render/coarse_image.h"
 #include "tracer/render/pixel_filter.h"
 #include "tracer/render/pixel_tracer.h"
 #include "tracer/render/tiles.h"
@@ -11,18 +12,15 @@
 
 namespace raypick {
 
-// The centre of the block of `step` x `step` pixels that holds a pixel; blocks are cut off at the
-// image's edge.
-Pixel coarse_sample(Pixel pixel, int step, ImageSize size);
-
 // What follows is worthless once `stop` is requested.
 
-// One ray for each block of the tile, which fills it. Blocks begin at the tile's top left corner.
+// One ray for each block of `step` x `step` pixels, of a tile of the coarse image.
 TilePart trace_blocks(const PixelTracer& tracer, const Tile& tile, int step,
                       const std::stop_token& stop);
 
-// One ray through each pixel's centre.
-TilePart trace_centres(const PixelTracer& tracer, const Tile& tile, const std::stop_token& stop);
+// One ray through each pixel's centre, but for those that `coarse` knows already (nullptr: none).
+TilePart trace_centres(const PixelTracer& tracer, const Tile& tile, const CoarseImage* coarse,
+                       const std::stop_token& stop);
 
 // The mean of the rays through each pixel's corners, and what its centre shows in all channels but
 // the colour. Corners that two tiles share are traced by both, which costs a sixteenth, and counted

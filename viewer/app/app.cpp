@@ -49,6 +49,7 @@ App::App(const ViewOptions& options, Window& window, InputState& input)
       input_(input),
       ui_scale_(chosen_scale(options.ui_scale, window)),
       ui_(window, ui_scale_),
+      view_(Window::wake),
       opener_(Window::wake),
       trees_(Window::wake),
       saver_(Window::wake),
@@ -80,7 +81,6 @@ bool App::working() const {
 }
 
 double App::patience() const {
-    if (view_.awaits_first_picture()) return 0.01;
     if (working()) return 0.1;
     return ui_.typing() ? 0.3 : 60.0;  // a text cursor blinks
 }

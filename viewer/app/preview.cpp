@@ -23,16 +23,23 @@ void Preview::want(const PreviewView& view) {
     wanted_ = view;
     const bool have_job = job_ || !error_.empty();
     if (have_job && job_view_ == view) return;
-    const bool may_replace = !job_ || job_shown() || job_ended_ || !job_view_.same_scene(view);
-    if (may_replace) start(view);
+    if (may_replace(view)) start(view);
+}
+
+bool Preview::may_replace(const PreviewView& view) const {
+    return !job_ || job_shown() || job_ended_ || !job_view_.same_scene(view);
 }
 
 void Preview::start(const PreviewView& view) {
     retire();
     error_.clear();
     job_view_ = view;
+    RenderPlan plan;
+    plan.coarse_step = pace_.step_for(view.size);
+    plan.on_coarse = notify_;
     try {
-        job_ = std::make_shared<RenderJob>(view.accel, view.camera, view.size, view.settings);
+        job_ = std::make_shared<RenderJob>(view.accel, view.camera, view.size, view.settings,
+                                           std::move(plan));
     } catch (const std::exception& error) {
         error_ = error.what();
     }
@@ -82,19 +89,25 @@ void Preview::update(Presenter& presenter, bool at_once) {
     const bool ended = job_->progress().finished;
     const bool due =
         at_once || !job_shown() || ended || Clock::now() - uploaded_ >= kUploadInterval;
-    if (due && job_->snapshot(frame_)) {
-        presenter.upload(frame_.image);
-        uploaded_ = Clock::now();
-        shown_ = job_view_;
-        shown_job_ = job_;
+    if (due && job_->snapshot(frame_)) show(presenter);
+    if (ended && !job_ended_) {
+        job_ended_ = true;
+        try {
+            job_->wait();
+        } catch (const std::exception& error) {
+            error_ = error.what();
+        }
     }
-    if (!ended || job_ended_) return;
-    job_ended_ = true;
-    try {
-        job_->wait();
-    } catch (const std::exception& error) {
-        error_ = error.what();
-    }
+    // The view has moved on while this picture was made: the next one begins at once.
+    if (!cancelled_ && wanted_ != job_view_ && may_replace(wanted_)) start(wanted_);
+}
+
+void Preview::show(Presenter& presenter) {
+    if (!job_shown()) pace_.learn(frame_.size, frame_.step, job_->progress().coarse_seconds);
+    presenter.upload(frame_.image, frame_.traced.empty() ? frame_.step : 1);
+    uploaded_ = Clock::now();
+    shown_ = job_view_;
+    shown_job_ = job_;
 }
 
 Pixel Preview::shown_pixel(Pixel pixel) const {

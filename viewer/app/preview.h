@@ -2,10 +2,12 @@
 // the GPU. Never waits for the tracer.
 #pragma once
 
+#include "tracer/render/coarse_pace.h"
 #include "tracer/render/render_job.h"
 #include "viewer/raster/presenter.h"
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,8 +40,15 @@ struct PreviewStatus {
 
 class Preview {
 public:
+    // What a coarse picture may take, seconds: with what it takes to show it, about 30 a second.
+    static constexpr double kCoarseBudget = 0.025;
+
+    // `notify` is called from a working thread when there is a first picture to take over.
+    explicit Preview(std::function<void()> notify = {}) : notify_(std::move(notify)) {}
+
     // Asks for a picture of this view. A running job of another view is replaced as soon as its
-    // first coarse picture is there, so that a moving camera is shown, too.
+    // first coarse picture is there, so that a moving camera is shown, too. That one is as coarse
+    // as it must be to come in time.
     void want(const PreviewView& view);
     // Ends the running job; its picture so far stays, and nothing starts until another view is
     // wanted.
@@ -54,7 +63,7 @@ public:
     // on the way to another view.
     [[nodiscard]] const PreviewView* shown() const;
     // That picture.
-    [[nodiscard]] const Image& image() const { return frame_.image; }
+    [[nodiscard]] Image image() const { return frame_.whole(); }
     // The pixel whose sample is shown at `pixel`.
     [[nodiscard]] Pixel shown_pixel(Pixel pixel) const;
 
@@ -65,12 +74,16 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
+    [[nodiscard]] bool may_replace(const PreviewView& view) const;
     void start(const PreviewView& view);
+    void show(Presenter& presenter);
     void retire();
     void collect_ended();
 
     [[nodiscard]] bool job_shown() const { return job_ && job_ == shown_job_; }
 
+    std::function<void()> notify_;
+    CoarsePace pace_{kCoarseBudget};
     std::shared_ptr<RenderJob> job_;
     PreviewView job_view_;
     PreviewView wanted_;

@@ -152,8 +152,4 @@ Image SceneView::picture() {
     return preview_.image();
 }
 
-bool SceneView::awaits_first_picture() const {
-    return preview_.busy() && !(shown_ && shown_->traced);
-}
-
 }  // namespace raypick

@@ -8,10 +8,12 @@
 #include "viewer/raster/presenter.h"
 #include "viewer/raster/rasterizer.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace raypick {
@@ -35,6 +37,9 @@ struct PickQuestion {
 // Needs a current OpenGL 3.3 core context, the same one in every call.
 class SceneView {
 public:
+    // `notify` is called from a working thread when the next prepare() will show something new.
+    explicit SceneView(std::function<void()> notify = {}) : preview_(std::move(notify)) {}
+
     // Shows another scene from this camera. `bounds` are those of its finite objects.
     void set_scene(std::shared_ptr<const Scene> scene, const Bounds& bounds, const Camera& camera);
     // What rays go through from now on, of the scene that is shown. Without it, as a new scene is,
@@ -74,7 +79,6 @@ public:
     void cancel_trace() { cancel_wanted_ = true; }
     // A traced picture is on its way.
     [[nodiscard]] bool busy() const { return preview_.busy(); }
-    [[nodiscard]] bool awaits_first_picture() const;
 
 private:
     void rasterise(ImageSize size);

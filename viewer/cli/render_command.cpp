@@ -53,8 +53,8 @@ Frame traced(const RenderCommand& command, const OpenedScene& opened, const Came
         build_timed(opened, {.threads = command.settings.threads, .stop = interrupt.token()});
     bar.clear();
     if (command.scene.verbose) print_report(built);
-    constexpr bool kProgressive = false;  // nobody looks at it before it is done
-    RenderJob job(built.accel, camera, command.size, command.settings, kProgressive);
+    const RenderPlan plan{.progressive = false};  // nobody looks at it before it is done
+    RenderJob job(built.accel, camera, command.size, command.settings, plan);
     const std::stop_callback cancel(interrupt.token(), [&job] { job.cancel(); });
     if (bar.visible()) show_progress(job, bar);
     job.wait();

@@ -60,6 +60,7 @@ struct Presenter::State {
     VertexArray no_vertices = new_vertex_array();
     GlTexture colour;
     GlTexture object;
+    int step = 1;
 };
 
 Presenter::Presenter() : state_(std::make_unique<State>()) {
@@ -72,7 +73,8 @@ Presenter::Presenter() : state_(std::make_unique<State>()) {
 
 Presenter::~Presenter() = default;
 
-void Presenter::upload(const Image& image) {
+void Presenter::upload(const Image& image, int step) {
+    state_->step = step;
     state_->colour =
         make_texture(kRgb32f, image.size, bottom_first(image.colour, image.size).data());
     state_->object =
@@ -107,6 +109,8 @@ void Presenter::present(unsigned colour_texture, unsigned object_texture, const 
     const Uniforms uniforms(state_->program);
     uniforms.set("frame_size", glm::ivec2(frame.cols, frame.rows));
     uniforms.set("view_origin", glm::vec2(view.top_left.col, bottom));
+    const bool coarse = colour_texture == state_->colour.name() && state_->step > 1;
+    uniforms.set("block", coarse ? state_->step : 0);
     uniforms.set("view_size", glm::vec2(view.size.cols, view.size.rows));
     uniforms.set("selected_count", static_cast<int>(selected.size()));
     uniforms.set("hovered", hovered);

@@ -24,8 +24,10 @@ public:
     Presenter(const Presenter&) = delete;
     Presenter& operator=(const Presenter&) = delete;
 
-    // Copies a traced frame (colour and object ids) to textures of its own.
-    void upload(const Image& image);
+    // Copies a traced frame (colour and object ids) to textures of its own. `step`: each pixel of
+    // the image stands for a block of so many rows and columns of the view, from its top left
+    // corner on.
+    void upload(const Image& image, int step = 1);
     [[nodiscard]] unsigned colour_texture() const;
     [[nodiscard]] unsigned object_texture() const;
 
