@@ -1,4 +1,5 @@
-// Puts a frame on the screen: linear colour as sRGB, outlines around selected and hovered objects.
+// Puts a frame on the screen: linear colour as sRGB and, if OUTLINES is defined, outlines around
+// selected and hovered objects. Without a GPU even outlines around nothing take longer than the rest.
 uniform sampler2D colour;
 uniform usampler2D object;
 uniform ivec2 frame_size;      // of the textures: columns and rows
@@ -34,6 +35,7 @@ ivec2 texel_at(vec2 pixel) {
     return clamp(ivec2(floor(pixel * vec2(frame_size) / view_size)), ivec2(0), frame_size - 1);
 }
 
+#ifdef OUTLINES
 uint object_at(vec2 pixel) {
     return texelFetch(object, texel_at(pixel), 0).r;
 }
@@ -91,14 +93,16 @@ int outline(vec2 pixel) {
     }
     return found;
 }
+#endif
 
 void main() {
     vec2 pixel = gl_FragCoord.xy - view_origin;
     vec3 linear = texelFetch(colour, texel_at(pixel), 0).rgb;
     screen = vec4(srgb_from_linear(linear.r), srgb_from_linear(linear.g),
                   srgb_from_linear(linear.b), 1.0);
-    if (selected_count == 0 && hovered == kNoObject) return;
+#ifdef OUTLINES
     int mark = outline(pixel);
     if (mark == 2) screen.rgb = selected_colour;
     if (mark == 1) screen.rgb = hovered_colour;
+#endif
 }

@@ -4,6 +4,7 @@
 #include "tests/agreement.h"
 #include "tests/gl_fixture.h"
 #include "tracer/error.h"
+#include "tracer/render/render_job.h"
 #include "tracer/shade/trace.h"
 #include "viewer/gl/load_gl.h"
 #include "viewer/gl/textures.h"
@@ -608,6 +609,36 @@ TEST_F(PresenterTest, CoarseFramesFillTheView) {
     EXPECT_EQ(bytes.at(4, 5), (std::array<std::uint8_t, 4>{0, 255, 0, 255}));
     EXPECT_EQ(bytes.at(5, 2), (std::array<std::uint8_t, 4>{0, 0, 255, 255}));
     EXPECT_EQ(bytes.at(9, 3), (std::array<std::uint8_t, 4>{255, 255, 255, 255}));
+}
+
+TEST_F(PresenterTest, BlocksLookLikeTheSameImageInFull) {
+    for (const ImageSize size : {ImageSize{10, 6}, ImageSize{23, 31}, ImageSize{5, 64}}) {
+        for (const int step : {1, 2, 3, 7, 16}) {
+            SCOPED_TRACE(testing::Message() << size.rows << " x " << size.cols << " by " << step);
+            FrameSnapshot frame;
+            frame.size = size;
+            frame.step = step;
+            frame.image =
+                make_image({(size.rows + step - 1) / step, (size.cols + step - 1) / step});
+            for (std::size_t i = 0; i < frame.image.colour.size(); ++i) {
+                frame.image.colour[i] = glm::vec3(0.001f * static_cast<float>(i), 0.5f, 0.1f);
+                frame.image.object[i] = static_cast<ObjectId>(i % 3);
+            }
+            Presenter presenter;
+            const ObjectId selected[] = {1};
+            const ViewRect view{{2, 3}, size};
+            const ImageSize framebuffer{size.rows + 4, size.cols + 5};
+            presenter.upload(frame.image, step);
+            const Bytes blocks = present(presenter, framebuffer, view, selected, kNoObject);
+            const Bytes plain_blocks = present(presenter, framebuffer, view, {}, kNoObject);
+            presenter.upload(frame.whole());
+            EXPECT_EQ(blocks.texels,
+                      present(presenter, framebuffer, view, selected, kNoObject).texels);
+            EXPECT_EQ(plain_blocks.texels,
+                      present(presenter, framebuffer, view, {}, kNoObject).texels);
+            EXPECT_NE(plain_blocks.at(2, 3), plain_blocks.at(1, 3)) << "nothing was drawn";
+        }
+    }
 }
 
 }  // namespace

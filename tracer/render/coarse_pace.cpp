@@ -24,7 +24,7 @@ int CoarsePace::finest_within(double seconds, ImageSize size) const {
 }
 
 double CoarsePace::cost() const {
-    std::array<double, 3> sorted = costs_;
+    std::array<double, 5> sorted = costs_;
     const std::size_t count = std::min(measured_, sorted.size());
     std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count));
     return sorted[count / 2];

@@ -30,7 +30,7 @@ private:
     [[nodiscard]] double cost() const;
 
     double budget_;
-    std::array<double, 3> costs_{};
+    std::array<double, 5> costs_{};
     std::size_t measured_ = 0;
     int last_step_ = kUnknown;
 };

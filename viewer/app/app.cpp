@@ -16,6 +16,8 @@ namespace {
 
 // ImGui needs a few frames to answer an event: hover, press, lay out, show.
 constexpr int kSettlingFrames = 3;
+// A person who drags something wants to see as much.
+constexpr double kFrameSeconds = 1.0 / 30.0;
 // Dragging over the view's whole height turns by half a turn.
 constexpr double kOrbitRadians = std::numbers::pi;
 
@@ -41,6 +43,16 @@ ViewSide side_of(Command command) {
     }
 }
 
+// True if there are some and all of them move the camera.
+bool only_move(const std::vector<InputAction>& actions) {
+    return !actions.empty() &&
+           std::all_of(actions.begin(), actions.end(), [](const InputAction& action) {
+               return std::holds_alternative<OrbitAction>(action) ||
+                      std::holds_alternative<PanAction>(action) ||
+                      std::holds_alternative<ZoomAction>(action);
+           });
+}
+
 }  // namespace
 
 App::App(const ViewOptions& options, Window& window, InputState& input)
@@ -62,7 +74,7 @@ App::App(const ViewOptions& options, Window& window, InputState& input)
 
 void App::run() {
     while (!quit_ && !window_.close_wanted()) {
-        if (window_.wait(frames_due_ > 0 ? 0.0 : patience())) settle();
+        if (window_.wait(frames_due_ > 0 && !waits_for_picture_ ? 0.0 : patience())) settle();
         if (working() || trees_.news() || ui_.typing()) frames_due_ = std::max(frames_due_, 1);
         if (frames_due_ == 0) continue;
         --frames_due_;
@@ -81,22 +93,30 @@ bool App::working() const {
 }
 
 double App::patience() const {
+    if (waits_for_picture_) return kFrameSeconds;
     if (working()) return 0.1;
     return ui_.typing() ? 0.3 : 60.0;  // a text cursor blinks
 }
 
 void App::step() {
     take_results();
-    for (const InputAction& action : input_.take_actions()) {
+    const std::vector<InputAction> actions = input_.take_actions();
+    for (const InputAction& action : actions)
         std::visit([this](const auto& what) { apply(what); }, action);
-    }
     layout_ = lay_out(window_.metrics(), ui_scale_, panels_);
     view_.prepare(layout_.view.size, trace_ ? &settings_ : nullptr);
+    // Drawing the old picture again would only take time from the one of the moved camera.
+    waits_for_picture_ = only_move(actions) && view_.awaits_picture() && view_.shown() == drawn_;
+    if (!waits_for_picture_) show_frame();
+    update_trees();
+}
+
+void App::show_frame() {
     update_hover();
     draw();
+    drawn_ = view_.shown();
     window_.set_title(title());
     remember_screen();
-    update_trees();
 }
 
 void App::remember_screen() {

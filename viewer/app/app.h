@@ -42,6 +42,7 @@ private:
     };
 
     void step();
+    void show_frame();
     // Draws a few frames, until everything that changed is on the screen.
     void settle();
     [[nodiscard]] bool working() const;
@@ -111,6 +112,8 @@ private:
     std::string message_;   // of the last thing done, for the status bar
     bool quit_ = false;
     int frames_due_ = 0;
+    std::optional<ShownFrame> drawn_;  // what the window shows
+    bool waits_for_picture_ = false;   // nothing else has changed
 };
 
 }  // namespace raypick

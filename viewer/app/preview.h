@@ -68,6 +68,8 @@ public:
     [[nodiscard]] Pixel shown_pixel(Pixel pixel) const;
 
     [[nodiscard]] PreviewStatus status() const;
+    // A view was asked for whose first picture is still to come.
+    [[nodiscard]] bool awaits_picture() const { return job_ && !job_shown() && !job_ended_; }
     // There is something to come, or a thread to wait for.
     [[nodiscard]] bool busy() const;
 

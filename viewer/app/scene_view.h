@@ -79,6 +79,10 @@ public:
     void cancel_trace() { cancel_wanted_ = true; }
     // A traced picture is on its way.
     [[nodiscard]] bool busy() const { return preview_.busy(); }
+    // What is shown was traced, and the same of another view is on its way.
+    [[nodiscard]] bool awaits_picture() const {
+        return shown_ && shown_->traced && preview_.awaits_picture();
+    }
 
 private:
     void rasterise(ImageSize size);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <string>
 #include <vector>
 
 namespace raypick {
@@ -43,6 +44,16 @@ BufferTexture upload_ids(std::span<const ObjectId> selected) {
             "selected objects"};
 }
 
+Program make_present_program(std::span<const std::string> defines) {
+    Program program = make_program("fullscreen.vert", "present.frag", defines);
+    const Uniforms uniforms(program);
+    uniforms.set("colour", static_cast<int>(Unit::colour));
+    uniforms.set("object", static_cast<int>(Unit::object));
+    uniforms.set("selected", static_cast<int>(Unit::selected));
+    glUseProgram(0);
+    return program;
+}
+
 void set_state() {
     for (const GLenum capability :
          std::initializer_list<GLenum>{GL_BLEND, GL_SCISSOR_TEST, GL_CULL_FACE, GL_DEPTH_TEST,
@@ -56,20 +67,22 @@ void set_state() {
 }  // namespace
 
 struct Presenter::State {
-    Program program = make_program("fullscreen.vert", "present.frag");
+    Program plain = make_present_program({});
+    Program outlined;  // made when it is needed first
     VertexArray no_vertices = new_vertex_array();
     GlTexture colour;
     GlTexture object;
     int step = 1;
+
+    const Program& program(bool outlines) {
+        if (!outlines) return plain;
+        const std::string defines[] = {"OUTLINES"};
+        if (outlined.name() == 0) outlined = make_present_program(defines);
+        return outlined;
+    }
 };
 
-Presenter::Presenter() : state_(std::make_unique<State>()) {
-    const Uniforms uniforms(state_->program);
-    uniforms.set("colour", static_cast<int>(Unit::colour));
-    uniforms.set("object", static_cast<int>(Unit::object));
-    uniforms.set("selected", static_cast<int>(Unit::selected));
-    glUseProgram(0);
-}
+Presenter::Presenter() : state_(std::make_unique<State>()) {}
 
 Presenter::~Presenter() = default;
 
@@ -106,7 +119,8 @@ void Presenter::present(unsigned colour_texture, unsigned object_texture, const 
     bind_texture(static_cast<GLuint>(Unit::colour), GL_TEXTURE_2D, colour_texture);
     bind_texture(static_cast<GLuint>(Unit::object), GL_TEXTURE_2D, object_texture);
     bind_texture(static_cast<GLuint>(Unit::selected), GL_TEXTURE_BUFFER, ids.texture());
-    const Uniforms uniforms(state_->program);
+    const bool outlines = !selected.empty() || hovered != kNoObject;
+    const Uniforms uniforms(state_->program(outlines));
     uniforms.set("frame_size", glm::ivec2(frame.cols, frame.rows));
     uniforms.set("view_origin", glm::vec2(view.top_left.col, bottom));
     const bool coarse = colour_texture == state_->colour.name() && state_->step > 1;
