@@ -33,6 +33,10 @@ bool Preview::may_replace(const PreviewView& view) const {
 void Preview::start(const PreviewView& view) {
     retire();
     error_.clear();
+    // What rays cost elsewhere says nothing about these.
+    if (!job_view_.same_scene(view) || job_view_.settings != view.settings) {
+        pace_ = CoarsePace(kCoarseBudget);
+    }
     job_view_ = view;
     RenderPlan plan;
     plan.coarse_step = pace_.step_for(view.size);
