@@ -16,6 +16,7 @@
 #include "tracer/accel/single_ray-inl.h"
 #include "tracer/accel/sole_elements-inl.h"
 
+#include <cstddef>
 #include <span>
 
 HWY_BEFORE_NAMESPACE();
@@ -204,18 +205,21 @@ private:
 
     void settle(const Verdict& verdict, std::size_t ray, RayMask bits, std::uint32_t object,
                 std::uint32_t primitive, bool holes) {
+        RayMask open = 0;
         if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
-            take(search_, verdict, ray, bits, object, primitive, holes);
+            open = take(search_, verdict, ray, bits, object, primitive, holes) << ray;
         } else {
             const RayMask sure = holes ? 0 : verdict.sure & bits;
             search_.block(sure << ray);
-            const RayMask open = (verdict.may & bits & ~sure) << ray;
-            if (open == 0) return;
-            if (!holes &&
-                std::holds_alternative<MeshInstance>(state_.scene->objects[object].shape)) {
-                decide_open(object, primitive, open);
-                return;
-            }
+            open = (verdict.may & bits & ~sure) << ray;
+        }
+        if (open == 0) return;
+        if (!holes && std::holds_alternative<MeshInstance>(state_.scene->objects[object].shape)) {
+            decide_open(object, primitive, open);
+        } else if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
+            each_ray(open,
+                     [&](std::size_t i) HWY_ATTR { search_.add_rival(i, object, primitive); });
+        } else {
             each_ray(open, [&](std::size_t i) HWY_ATTR {
                 AnyOfOne one{search_, i};
                 trace_primitive(state_, object, primitive, rays_[i], query_, one);
@@ -248,9 +252,12 @@ private:
                 const Ray& ray = rays_[lanes[i]];
                 const auto t = static_cast<float>(answers.t[i]);
                 const bool front = answers.determinant[i] > 0.0;
-                if (((answers.hit >> i) & 1) != 0 && t > ray.t_min && t < ray.t_max &&
-                    shows(object.sides, front) && shows(query_.sides, front)) {
+                if (((answers.hit >> i) & 1) == 0 || !(t > ray.t_min && t < ray.t_max)) continue;
+                if (!shows(object.sides, front) || !shows(query_.sides, front)) continue;
+                if constexpr (std::is_same_v<Group, AnyOfGroup>) {
                     search_.block(RayMask{1} << lanes[i]);
+                } else if (t <= search_.limits.t_far[lanes[i]]) {
+                    search_.offer(lanes[i], index, primitive, t);
                 }
             }
         }
@@ -280,8 +287,12 @@ struct Chunk {
                 alone |= RayMask{usable(rays[i]) ? 1u : 0u} << i;
             return;
         }
-        for (std::size_t i = 0; i < kGroup; ++i)
-            set(i, i < rays.size() ? rays[i] : rays[0]);
+        if (kAtOnce > 1 && rays.size() == kGroup) {
+            set_all(rays);
+        } else {
+            for (std::size_t i = 0; i < kGroup; ++i)
+                set(i, i < rays.size() ? rays[i] : rays[0]);
+        }
         const RayMask there = rays.size() == kGroup ? ~RayMask{0} : (RayMask{1} << rays.size()) - 1;
         const RayMask groupable = there & ordinary();
         each_ray(there & ~groupable,
@@ -296,6 +307,33 @@ struct Chunk {
     }
 
 private:
+    // A ray's numbers are eight in a row: origin, direction, t_min, t_max.
+    HWY_INLINE void set_all(std::span<const Ray> rays) {
+#if HWY_TARGET != HWY_SCALAR
+        static_assert(sizeof(Ray) == 8 * sizeof(float) && offsetof(Ray, direction) == 12 &&
+                      offsetof(Ray, t_min) == 24 && offsetof(Ray, t_max) == 28);
+        const Rays d;
+        for (std::size_t i = 0; i < kGroup; i += kAtOnce) {
+            // Of one half of them in turns: number k and number k + 4 of each ray.
+            RayFloats a[4], b[4];
+            const auto* first = reinterpret_cast<const float*>(&rays[i]);
+            const auto* second = reinterpret_cast<const float*>(&rays[i + kAtOnce / 2]);
+            hn::LoadInterleaved4(d, first, a[0], a[1], a[2], a[3]);
+            hn::LoadInterleaved4(d, second, b[0], b[1], b[2], b[3]);
+            float* const low[4] = {&world.origin[0][i], &world.origin[1][i], &world.origin[2][i],
+                                   &world.direction[0][i]};
+            float* const high[4] = {&world.direction[1][i], &world.direction[2][i],
+                                    &limits.t_min[i], &limits.t_far[i]};
+            for (std::size_t k = 0; k < 4; ++k) {
+                hn::Store(hn::ConcatEven(d, b[k], a[k]), d, low[k]);
+                hn::Store(hn::ConcatOdd(d, b[k], a[k]), d, high[k]);
+            }
+        }
+#else
+        (void)rays;
+#endif
+    }
+
     HWY_INLINE void set(std::size_t i, const Ray& ray) {
         world.origin[0][i] = ray.origin.x;
         world.origin[1][i] = ray.origin.y;

@@ -254,15 +254,15 @@ HWY_INLINE Verdict judge(const GroupSpace& space, const GroupLimits& limits,
     return verdict;
 }
 
-// Of the mask's rays in a vector those that may hit: keeps the sure ones in place where they stand
-// before what was found, and makes rivals of the others.
-HWY_INLINE void take(ClosestOfGroup& search, const Verdict& verdict, std::size_t ray, RayMask bits,
-                     std::uint32_t object, std::uint32_t primitive, bool holes) {
+// Of the mask's rays in a vector those that surely hit: keeps them in place where they stand before
+// what was found, and makes rivals of the others. Returns those that may hit or not.
+HWY_INLINE RayMask take(ClosestOfGroup& search, const Verdict& verdict, std::size_t ray,
+                        RayMask bits, std::uint32_t object, std::uint32_t primitive, bool holes) {
     const Rays d;
     const hn::Rebind<std::uint32_t, Rays> du;
     const RayMask may = verdict.may & bits;
-    RayMask rivals = may;
     const RayMask sure = holes ? 0 : verdict.sure & bits;
+    RayMask rivals = sure;
     if (sure != 0) {
         const auto from = hn::Load(d, search.candidate_from.data() + ray);
         const auto far = hn::Load(d, search.limits.t_far.data() + ray);
@@ -284,6 +284,7 @@ HWY_INLINE void take(ClosestOfGroup& search, const Verdict& verdict, std::size_t
         rivals &= ~first;
     }
     each_ray(rivals, [&](std::size_t i) HWY_ATTR { search.add_rival(ray + i, object, primitive); });
+    return may & ~sure;
 }
 
 }  // namespace raypick::HWY_NAMESPACE
