@@ -5,12 +5,17 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <stdexcept>
 
 namespace raypick {
 
 namespace {
+
+std::array<std::uint32_t, 3> bits_of(const glm::vec3& position) {
+    return std::bit_cast<std::array<std::uint32_t, 3>>(position);
+}
 
 // A patch that is being put together.
 class Collector {
@@ -59,7 +64,7 @@ private:
     // Of the corner at a position, bit for bit; kMostCorners if there is no room for it.
     std::uint32_t number_of(const glm::vec3& position) {
         for (std::uint32_t i = 0; i < patch_.corners; ++i) {
-            if (std::memcmp(&positions_[i], &position, sizeof position) == 0) return i;
+            if (bits_of(positions_[i]) == bits_of(position)) return i;
         }
         if (patch_.corners == TrianglePatch::kMostCorners) return TrianglePatch::kMostCorners;
         positions_[patch_.corners] = position;

@@ -33,11 +33,12 @@ struct TrianglePatch {
     }
     // Coordinates of all corners along an axis. At least sixteen can be read.
     [[nodiscard]] const float* along(int axis) const {
-        return reinterpret_cast<const float*>(primitives() + triangles) + axis * corners;
+        return reinterpret_cast<const float*>(primitives() + triangles) +
+               static_cast<std::ptrdiff_t>(axis) * corners;
     }
     [[nodiscard]] glm::vec3 position(std::uint32_t triangle, int k) const {
         const float* at = along(0) + ((corner[k] >> (4 * triangle)) & 15u);
-        return {at[0], at[corners], at[2 * corners]};
+        return {at[0], at[corners], at[std::size_t{2} * corners]};
     }
     // In blocks; the next patch of a leaf with more triangles follows.
     [[nodiscard]] std::size_t size() const { return (4 + triangles + 3u * corners + 3) / 4; }
