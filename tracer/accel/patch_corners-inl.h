@@ -25,24 +25,22 @@ inline constexpr std::size_t kTrianglesAtOnce = hn::MaxLanes(Triangles());
 // Picks corner k of the triangles from `first` on out of the coordinates along an axis.
 class CornerPick {
 public:
-    HWY_INLINE CornerPick(const TrianglePatch& patch, std::size_t k, std::size_t first) {
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2
-        const hn::Rebind<std::uint32_t, Triangles> d;
-        (void)first;  // it is the one and only
-        HWY_ALIGN static constexpr std::uint32_t kShifts[8] = {0, 4, 8, 12, 16, 20, 24, 28};
-        number_ = hn::Shr(hn::Set(d, patch.corner[k]), hn::Load(d, kShifts));
+#if HWY_TARGET <= HWY_AVX2
+    // `first` is the one and only.
+    HWY_INLINE CornerPick(const TrianglePatch& patch, std::size_t k, std::size_t /*first*/)
+        : number_(hn::Shr(hn::Set(Numbers(), patch.corner[k]), hn::Load(Numbers(), kShifts))) {}
 #else
-        numbers_ = patch.corner[k] >> (4 * first);
+    HWY_INLINE CornerPick(const TrianglePatch& patch, std::size_t k, std::size_t first)
+        : numbers_(patch.corner[k] >> (4 * first)) {}
 #endif
-    }
 
     HWY_INLINE TriangleFloats of(const float* coordinates) const {
         const Triangles d;
-#if HWY_TARGET == HWY_AVX3
+#if HWY_TARGET <= HWY_AVX3
         const auto low = hn::LoadU(d, coordinates);
         const auto high = hn::LoadU(d, coordinates + 8);
         return TriangleFloats{_mm256_permutex2var_ps(low.raw, number_.raw, high.raw)};
-#elif HWY_TARGET == HWY_AVX2
+#elif HWY_TARGET <= HWY_AVX2
         const TriangleFloats low{
             _mm256_permutevar8x32_ps(hn::LoadU(d, coordinates).raw, number_.raw)};
         const TriangleFloats high{
@@ -58,8 +56,11 @@ public:
     }
 
 private:
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2
-    hn::Vec<hn::Rebind<std::uint32_t, Triangles>> number_;  // beyond bit 3: whatever
+#if HWY_TARGET <= HWY_AVX2
+    using Numbers = hn::Rebind<std::uint32_t, Triangles>;
+    HWY_ALIGN static constexpr std::uint32_t kShifts[8] = {0, 4, 8, 12, 16, 20, 24, 28};
+
+    hn::Vec<Numbers> number_;  // beyond bit 3: whatever
 #else
     std::uint32_t numbers_;
 #endif

@@ -34,31 +34,28 @@ namespace hn = hwy::HWY_NAMESPACE;
 class TriangleFilter {
 public:
     // Of a ray as it came.
-    TriangleFilter(const glm::vec3& origin, const glm::vec3& direction) {
-        const glm::vec3 d = glm::abs(direction);
-        // Without a branch, as the longest axis can't be foretold.
-        const int z_is_longest = static_cast<int>(d.z >= std::max(d.x, d.y));
-        const int y_is_longest = static_cast<int>(d.y >= d.x) & (1 - z_is_longest);
-        kz_ = y_is_longest + 2 * z_is_longest;
-        constexpr int kNext[3] = {1, 2, 0};
-        kx_ = kNext[kz_];
-        ky_ = kNext[kx_];
-        sx_ = direction[kx_] / direction[kz_];
-        sy_ = direction[ky_] / direction[kz_];
-        sz_ = 1.0f / direction[kz_];
-        set_origin(origin);
-    }
+    TriangleFilter(const glm::vec3& origin, const glm::vec3& direction)
+        : kx_(kNext[longest_axis(direction)]),
+          ky_(kNext[kx_]),
+          kz_(kNext[ky_]),
+          ox_(origin[kx_]),
+          oy_(origin[ky_]),
+          oz_(origin[kz_]),
+          sx_(direction[kx_] / direction[kz_]),
+          sy_(direction[ky_] / direction[kz_]),
+          sz_(1.0f / direction[kz_]) {}
 
     // Of a ray that was transformed: its direction may be one that float can't hold.
     explicit TriangleFilter(const ShearedRay& ray)
         : kx_(ray.kx),
           ky_(ray.ky),
           kz_(ray.kz),
+          ox_(static_cast<float>(ray.origin[kx_])),
+          oy_(static_cast<float>(ray.origin[ky_])),
+          oz_(static_cast<float>(ray.origin[kz_])),
           sx_(static_cast<float>(ray.sx)),
           sy_(static_cast<float>(ray.sy)),
-          sz_(static_cast<float>(ray.sz)) {
-        set_origin(glm::vec3(ray.origin));
-    }
+          sz_(static_cast<float>(ray.sz)) {}
 
     // Those of the patch that the ray may hit at a t of at most `limit`, as a mask. `reach` is the
     // largest coordinate of the origin and of the mesh.
@@ -103,7 +100,7 @@ private:
         const auto farthest = hn::Mul(hn::MulAdd(error, hn::Set(d, 4.0f), determinant),
                                       hn::Set(d, limit * (1.0f + 0x1p-18f)));
         const auto beyond = hn::Gt(hn::Sub(scaled, sum_error), farthest);
-        return ~triangle_bits(hn::Or(outside, beyond));
+        return ~triangle_bits(hn::Or(outside, beyond)) & ((1u << kTrianglesAtOnce) - 1u);
     }
 
     HWY_INLINE Corner sheared(const TrianglePatch& patch, std::size_t k, std::size_t first) const {
@@ -117,11 +114,15 @@ private:
         return {x, y, z, hn::Max(hn::Abs(x), hn::Abs(y))};
     }
 
-    void set_origin(const glm::vec3& origin) {
-        ox_ = origin[kx_];
-        oy_ = origin[ky_];
-        oz_ = origin[kz_];
+    // Without a branch, as it can't be foretold.
+    static int longest_axis(const glm::vec3& direction) {
+        const glm::vec3 d = glm::abs(direction);
+        const int z_is_longest = static_cast<int>(d.z >= std::max(d.x, d.y));
+        const int y_is_longest = static_cast<int>(d.y >= d.x) & (1 - z_is_longest);
+        return y_is_longest + 2 * z_is_longest;
     }
+
+    static constexpr int kNext[3] = {1, 2, 0};
 
     int kx_, ky_, kz_;
     float ox_, oy_, oz_;

@@ -94,25 +94,22 @@ public:
     // * infinity counts as inside the slab.
     HWY_INLINE void push_met(const WideNode& node, float t_min, float t_max,
                              WaitingBoxes& stack) const {
-        const Boxes d;
-        if constexpr (kBoxesAtOnce == kWidth) {
-            const Interval met = meet(node, 0, t_min, t_max);
-            push_ordered(node, met, stack);
-        } else {
-            HWY_ALIGN float enter[kWidth];
-            std::uint32_t mask = 0;
-            for (std::size_t i = 0; i < kWidth; i += kBoxesAtOnce) {
-                const Interval met = meet(node, i, t_min, t_max);
-                hn::Store(met.near, d, enter + i);
-                mask |= box_bits(hn::Le(met.near, met.far)) << i;
-            }
-            for (std::uint32_t order = node.far_to_near(octant_), i = 0; i < kWidth;
-                 ++i, order >>= 3) {
-                if (((mask >> (order & 7u)) & 1u) != 0) {
-                    stack.push(enter[order & 7u], node.child[order & 7u]);
-                }
+#if HWY_TARGET <= HWY_AVX2
+        push_ordered(node, meet(node, 0, t_min, t_max), stack);
+#else
+        HWY_ALIGN float enter[kWidth];
+        std::uint32_t mask = 0;
+        for (std::size_t i = 0; i < kWidth; i += kBoxesAtOnce) {
+            const Interval met = meet(node, i, t_min, t_max);
+            hn::Store(met.near, Boxes(), enter + i);
+            mask |= box_bits(hn::Le(met.near, met.far)) << i;
+        }
+        for (std::uint32_t order = node.far_to_near(octant_), i = 0; i < kWidth; ++i, order >>= 3) {
+            if (((mask >> (order & 7u)) & 1u) != 0) {
+                stack.push(enter[order & 7u], node.child[order & 7u]);
             }
         }
+#endif
     }
 
 private:
@@ -141,9 +138,9 @@ private:
         return {near, far};
     }
 
+#if HWY_TARGET <= HWY_AVX2
     HWY_INLINE void push_ordered(const WideNode& node, const Interval& met,
                                  WaitingBoxes& stack) const {
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2
         const Boxes d;
         const hn::Rebind<std::uint32_t, Boxes> du;
         HWY_ALIGN static constexpr std::uint32_t kShifts[8] = {0, 3, 6, 9, 12, 15, 18, 21};
@@ -156,10 +153,8 @@ private:
         hn::StoreU(hn::Compress(near, mask), d, stack.enter + stack.count);
         hn::StoreU(hn::Compress(child, hn::RebindMask(du, mask)), du, stack.ref + stack.count);
         stack.count += hn::CountTrue(d, mask);
-#else
-        (void)node, (void)met, (void)stack;
-#endif
     }
+#endif
 
     static constexpr float kGrow = 1.0f + 8.0f * 5.9604645e-8f;
     static constexpr float kShrink = 1.0f - 8.0f * 5.9604645e-8f;
