@@ -1,18 +1,17 @@
 // Batches of rays, on every instruction set that this machine has: bit for bit the answers of the
 // same rays one by one, and those of brute force.
 #include "tests/brute_force.h"
+#include "tests/ray_batches.h"
 #include "tests/tracer_scenes.h"
 #include "tracer/accel/accel.h"
 #include "tracer/accel/trace_rays.h"
 #include "tracer/error.h"
-#include "tracer/geometry/camera.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
-#include <memory>
 #include <string>
 
 namespace raypick {
@@ -21,90 +20,11 @@ namespace {
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// Rays side by side, in blocks of 16 x 4 pixels, from outside of the scene and from within.
-std::vector<Ray> coherent_rays(const Bounds& bounds, ImageSize size, Projection projection,
-                               std::uint64_t seed) {
-    Random random(seed);
-    std::vector<Ray> rays;
-    for (const double distance : {3.0, 0.9, 0.2}) {
-        Camera camera;
-        camera.at =
-            glm::dvec3(bounds.centre()) + 0.1 * glm::dvec3(bounds.extent()) * random.direction();
-        camera.eye =
-            glm::dvec3(bounds.centre()) +
-            distance * static_cast<double>(glm::length(bounds.extent())) * random.direction();
-        camera.projection = projection;
-        camera.near = 1e-3 * static_cast<double>(glm::length(bounds.extent()));
-        camera.height = 1.5 * static_cast<double>(glm::length(bounds.extent()));
-        const RayGenerator generator(camera, size);
-        for (int row = 0; row + 4 <= size.rows; row += 4) {
-            for (int col = 0; col + 16 <= size.cols; col += 16) {
-                for (int i = 0; i < 64; ++i) {
-                    const Pixel pixel{row + i / 16, col + i % 16};
-                    rays.push_back(generator.ray(pixel_centre(pixel)));
-                }
-            }
-        }
-    }
-    return rays;
-}
-
-// All of them towards one point, as shadow rays go.
-std::vector<Ray> shadow_rays(const Accel& accel, const std::vector<Ray>& eye_rays,
-                             const glm::vec3& light) {
-    std::vector<Ray> rays;
-    for (const Ray& eye : eye_rays) {
-        const auto hit = accel.intersect(eye);
-        if (!hit) continue;
-        Ray ray = ray_towards(eye.at(hit->t * 0.9999f), glm::dvec3(light));
-        ray.t_max = glm::distance(ray.origin, light);
-        rays.push_back(ray);
-    }
-    return rays;
-}
-
-enum class Hits { some, perhaps };
-
-void expect_as_one_by_one(const Accel& accel, const std::vector<Ray>& rays,
-                          const RayQuery& query = {}, Hits wanted = Hits::some) {
-    std::vector<Hit> hits(rays.size());
-    std::vector<std::uint8_t> blocked(rays.size(), 7);
-    accel.intersect(rays, hits, query);
-    accel.occluded(rays, blocked, query);
-    int found = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        const Hit alone = accel.intersect(rays[i], query).value_or(Hit{});
-        found += alone.valid() ? 1 : 0;
-        ASSERT_EQ(hits[i], alone) << i << ": " << to_text(rays[i]);
-        ASSERT_EQ(blocked[i], alone.valid() ? 1 : 0) << i << ": " << to_text(rays[i]);
-        ASSERT_EQ(accel.occluded(rays[i], query), alone.valid()) << i << ": " << to_text(rays[i]);
-    }
-    if (wanted == Hits::some) {
-        EXPECT_GT(found, 0);
-    }
-}
-
 class AccelBatch : public testing::TestWithParam<std::string> {
 protected:
     void SetUp() override { use_instruction_set(GetParam()); }
     void TearDown() override { use_instruction_set(""); }
 };
-
-void expect_all_ways(const Scene& scene, std::uint64_t seed) {
-    const Accel accel = accel_of(scene);
-    const BruteForce brute(scene);
-    std::vector<Ray> rays = coherent_rays(accel.bounds(), {24, 32}, Projection::perspective, seed);
-    for (const Ray& ray : rays_through(accel.bounds(), seed, 300))
-        rays.push_back(ray);
-    const std::vector<Ray> parallel =
-        coherent_rays(accel.bounds(), {16, 16}, Projection::orthographic, seed);
-    rays.insert(rays.end(), parallel.begin(), parallel.end());
-    expect_as_one_by_one(accel, rays);
-    expect_as_one_by_one(accel, shadow_rays(accel, rays, accel.bounds().max * 1.3f));
-    for (std::size_t i = 0; i < rays.size(); i += 5) {
-        ASSERT_EQ(complaint(accel.intersect(rays[i]), brute.all(rays[i])), "") << to_text(rays[i]);
-    }
-}
 
 Scene mixed_scene() {
     Scene scene;

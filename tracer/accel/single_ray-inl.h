@@ -15,7 +15,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <variant>
@@ -40,8 +42,8 @@ public:
 
     RayInSpace(const ObjectRay& ray, const Instance& instance)
         : origin_reach_(largest_of(glm::vec3(ray.origin))),
-          slabs_(glm::vec3(ray.origin), glm::vec3(ray.direction),
-                 instance.slop * std::max(origin_reach_, instance.tree->reach)),
+          slabs_(slabs_of(glm::vec3(ray.origin), glm::vec3(ray.direction),
+                          instance.slop * std::max(origin_reach_, instance.tree->reach))),
           sheared_(shear(ray)),
           filter_(*sheared_) {}
 
@@ -57,6 +59,16 @@ public:
     }
 
 private:
+    // Of a ray that float can't hold one that meets every box there is: infinity less infinity is
+    // no number, which would let it into the empty boxes of children that aren't there, too.
+    static SlabRay slabs_of(const glm::vec3& origin, const glm::vec3& direction, float slop) {
+        const glm::vec3 sum = glm::abs(origin) + glm::abs(direction) + slop;
+        if (std::isfinite(sum.x) && std::isfinite(sum.y) && std::isfinite(sum.z)) {
+            return SlabRay(origin, direction, slop);
+        }
+        return SlabRay(glm::vec3(0.0f), glm::vec3(0.0f), std::numeric_limits<float>::max());
+    }
+
     float origin_reach_;
     SlabRay slabs_;
     std::optional<ShearedRay> sheared_;  // as soon as it is needed

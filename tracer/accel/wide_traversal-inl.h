@@ -56,11 +56,11 @@ HWY_INLINE std::uint32_t box_bits(M mask) {
 }
 
 // Where a ray may go on, and where it enters there at the earliest. Not initialised, as it is
-// large.
+// large. What waits in the top tree and in an object's may lie on one stack.
 struct WaitingBoxes {
     std::size_t count;
-    float enter[WideBvh::kMostWaiting];
-    std::uint32_t ref[WideBvh::kMostWaiting];
+    float enter[2 * WideBvh::kMostWaiting];
+    std::uint32_t ref[2 * WideBvh::kMostWaiting];
 
     void push(float at, std::uint32_t what) {
         enter[count] = at;
