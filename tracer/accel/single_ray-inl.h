@@ -64,9 +64,9 @@ private:
     static SlabRay slabs_of(const glm::vec3& origin, const glm::vec3& direction, float slop) {
         const glm::vec3 sum = glm::abs(origin) + glm::abs(direction) + slop;
         if (std::isfinite(sum.x) && std::isfinite(sum.y) && std::isfinite(sum.z)) {
-            return SlabRay(origin, direction, slop);
+            return {origin, direction, slop};
         }
-        return SlabRay(glm::vec3(0.0f), glm::vec3(0.0f), std::numeric_limits<float>::max());
+        return {glm::vec3(0.0f), glm::vec3(0.0f), std::numeric_limits<float>::max()};
     }
 
     float origin_reach_;
