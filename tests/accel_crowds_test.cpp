@@ -108,7 +108,7 @@ TEST_P(AccelCrowds, MasksAndSidesOfObjectsInEachOthersWay) {
     }
 }
 
-// More than a byte can count, in one leaf as nothing tells them apart.
+// More than a byte can count, and nothing tells them apart.
 TEST_P(AccelCrowds, TrianglesInOnePlace) {
     for (const std::uint32_t count : {8u, 9u, 300u, 1000u}) {
         SCOPED_TRACE(count);

@@ -134,7 +134,7 @@ TEST(WideBvh, NothingIsEmpty) {
     }
 }
 
-// So many in one place can't be told apart: a leaf then holds more than it should.
+// So many in one place can't be told apart.
 TEST(WideBvh, ManyBoxesInOnePlaceAreAllReached) {
     const Boxes boxes(1000, scattered(3, 1, 0.5).front());
     const WideBvh bvh = wide_over(boxes, {.max_leaf = 1});
