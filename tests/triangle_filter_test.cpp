@@ -6,10 +6,10 @@
 
 #include "tests/brute_force.h"
 #include "tests/tracer_scenes.h"
-#include "tracer/accel/group_boxes-inl.h"
-#include "tracer/accel/group_triangles-inl.h"
+#include "tracer/accel/simd/group_boxes-inl.h"
+#include "tracer/accel/simd/group_triangles-inl.h"
+#include "tracer/accel/simd/triangle_filter-inl.h"
 #include "tracer/accel/trace_rays.h"
-#include "tracer/accel/triangle_filter-inl.h"
 #include "tracer/geometry/triangle_test.h"
 
 #include <gmock/gmock.h>

@@ -2,10 +2,10 @@
 #define HWY_TARGET_INCLUDE "tracer/accel/trace_rays.cpp"
 #include <hwy/foreach_target.h>
 
-#include "tracer/accel/courses-inl.h"
-#include "tracer/accel/group_trace-inl.h"
 #include "tracer/accel/searches.h"
-#include "tracer/accel/single_ray-inl.h"
+#include "tracer/accel/simd/courses-inl.h"
+#include "tracer/accel/simd/group_trace-inl.h"
+#include "tracer/accel/simd/single_ray-inl.h"
 #include "tracer/accel/trace_rays.h"
 #include "tracer/error.h"
 

@@ -8,7 +8,7 @@
 #define RAYPICK_DECIDE_SPHERES_INL_H
 #endif
 
-#include "tracer/accel/double_vectors-inl.h"
+#include "tracer/accel/simd/double_vectors-inl.h"
 #include "tracer/geometry/shapes.h"
 #include "tracer/geometry/sphere_uv.h"
 

@@ -7,7 +7,7 @@
 #define RAYPICK_RAY_GROUP_INL_H
 #endif
 
-#include "tracer/accel/wide_traversal-inl.h"
+#include "tracer/accel/simd/wide_traversal-inl.h"
 #include "tracer/geometry/shapes.h"
 
 #include <algorithm>

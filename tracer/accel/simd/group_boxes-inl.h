@@ -10,7 +10,7 @@
 #define RAYPICK_GROUP_BOXES_INL_H
 #endif
 
-#include "tracer/accel/ray_group-inl.h"
+#include "tracer/accel/simd/ray_group-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {

@@ -7,7 +7,7 @@
 #define RAYPICK_DOUBLE_VECTORS_INL_H
 #endif
 
-#include "tracer/accel/decide_triangles-inl.h"
+#include "tracer/accel/simd/decide_triangles-inl.h"
 
 #include <array>
 #include <cstddef>

@@ -8,7 +8,7 @@
 #define RAYPICK_DECIDE_CONES_INL_H
 #endif
 
-#include "tracer/accel/double_vectors-inl.h"
+#include "tracer/accel/simd/double_vectors-inl.h"
 #include "tracer/geometry/axis_frame.h"
 #include "tracer/geometry/shapes.h"
 

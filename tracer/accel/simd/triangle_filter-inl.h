@@ -7,7 +7,7 @@
 #define RAYPICK_TRIANGLE_FILTER_INL_H
 #endif
 
-#include "tracer/accel/patch_corners-inl.h"
+#include "tracer/accel/simd/patch_corners-inl.h"
 #include "tracer/geometry/shapes.h"
 #include "tracer/geometry/triangle_test.h"
 

@@ -7,9 +7,10 @@
 #define RAYPICK_GROUP_TRIANGLES_INL_H
 #endif
 
-#include "tracer/accel/group_search-inl.h"
-#include "tracer/accel/ray_group-inl.h"
-#include "tracer/accel/single_ray-inl.h"
+#include "tracer/accel/simd/group_boxes-inl.h"
+#include "tracer/accel/simd/group_search-inl.h"
+#include "tracer/accel/simd/ray_group-inl.h"
+#include "tracer/accel/simd/single_ray-inl.h"
 #include "tracer/scene/scene.h"
 
 #include <glm/common.hpp>

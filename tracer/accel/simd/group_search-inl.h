@@ -6,8 +6,8 @@
 #define RAYPICK_GROUP_SEARCH_INL_H
 #endif
 
-#include "tracer/accel/ray_group-inl.h"
 #include "tracer/accel/searches.h"
+#include "tracer/accel/simd/ray_group-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {

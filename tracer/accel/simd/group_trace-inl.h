@@ -6,15 +6,15 @@
 #define RAYPICK_GROUP_TRACE_INL_H
 #endif
 
-#include "tracer/accel/courses-inl.h"
-#include "tracer/accel/decide_triangles-inl.h"
-#include "tracer/accel/group_boxes-inl.h"
-#include "tracer/accel/group_cones-inl.h"
-#include "tracer/accel/group_search-inl.h"
-#include "tracer/accel/group_spheres-inl.h"
-#include "tracer/accel/group_triangles-inl.h"
-#include "tracer/accel/single_ray-inl.h"
-#include "tracer/accel/sole_elements-inl.h"
+#include "tracer/accel/simd/courses-inl.h"
+#include "tracer/accel/simd/decide_triangles-inl.h"
+#include "tracer/accel/simd/group_boxes-inl.h"
+#include "tracer/accel/simd/group_cones-inl.h"
+#include "tracer/accel/simd/group_search-inl.h"
+#include "tracer/accel/simd/group_spheres-inl.h"
+#include "tracer/accel/simd/group_triangles-inl.h"
+#include "tracer/accel/simd/single_ray-inl.h"
+#include "tracer/accel/simd/sole_elements-inl.h"
 
 #include <cstddef>
 #include <span>

@@ -7,7 +7,7 @@
 #define RAYPICK_COURSES_INL_H
 #endif
 
-#include "tracer/accel/single_ray-inl.h"
+#include "tracer/accel/simd/single_ray-inl.h"
 
 #include <array>
 #include <cstddef>

@@ -6,10 +6,10 @@
 #define RAYPICK_SINGLE_RAY_INL_H
 #endif
 
-#include "tracer/accel/cone_filter-inl.h"
 #include "tracer/accel/passage.h"
-#include "tracer/accel/triangle_filter-inl.h"
-#include "tracer/accel/wide_traversal-inl.h"
+#include "tracer/accel/simd/cone_filter-inl.h"
+#include "tracer/accel/simd/triangle_filter-inl.h"
+#include "tracer/accel/simd/wide_traversal-inl.h"
 
 #include <glm/common.hpp>
 

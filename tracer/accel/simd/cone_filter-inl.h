@@ -7,7 +7,7 @@
 #define RAYPICK_CONE_FILTER_INL_H
 #endif
 
-#include "tracer/accel/cone_bounds-inl.h"
+#include "tracer/accel/simd/cone_bounds-inl.h"
 #include "tracer/bvh/wide_bvh.h"
 #include "tracer/scene/scene.h"
 

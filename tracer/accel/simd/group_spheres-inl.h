@@ -7,7 +7,7 @@
 #define RAYPICK_GROUP_SPHERES_INL_H
 #endif
 
-#include "tracer/accel/group_triangles-inl.h"
+#include "tracer/accel/simd/group_triangles-inl.h"
 
 #include <glm/vec4.hpp>
 

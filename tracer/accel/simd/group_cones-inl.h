@@ -6,9 +6,9 @@
 #define RAYPICK_GROUP_CONES_INL_H
 #endif
 
-#include "tracer/accel/cone_bounds-inl.h"
-#include "tracer/accel/group_spheres-inl.h"
-#include "tracer/accel/group_triangles-inl.h"
+#include "tracer/accel/simd/cone_bounds-inl.h"
+#include "tracer/accel/simd/group_spheres-inl.h"
+#include "tracer/accel/simd/group_triangles-inl.h"
 
 #include <glm/vec4.hpp>
 

@@ -7,10 +7,10 @@
 #define RAYPICK_SOLE_ELEMENTS_INL_H
 #endif
 
-#include "tracer/accel/decide_cones-inl.h"
-#include "tracer/accel/decide_spheres-inl.h"
-#include "tracer/accel/group_search-inl.h"
 #include "tracer/accel/passage.h"
+#include "tracer/accel/simd/decide_cones-inl.h"
+#include "tracer/accel/simd/decide_spheres-inl.h"
+#include "tracer/accel/simd/group_search-inl.h"
 
 #include <array>
 #include <bit>
