@@ -1,6 +1,7 @@
 #include "tracer/accel/local_point.h"
 
 #include "tracer/geometry/axis_frame.h"
+#include "tracer/geometry/rectangle.h"
 
 #include <glm/geometric.hpp>
 
@@ -346,7 +347,8 @@ struct LocalPointOf {
     }
 
     LocalPoint operator()(const Rectangle& rectangle) const {
-        const ShapeHit exact = found_again(rectangle, ray, hit, true);
+        ShapeHit exact;
+        meet_within(rectangle, ray, exact);
         const glm::dvec3& u = rectangle.edge_u;
         const glm::dvec3& v = rectangle.edge_v;
         const double magnitude = largest(rectangle.corner) + largest(u) + largest(v);

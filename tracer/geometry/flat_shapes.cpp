@@ -1,5 +1,6 @@
 // Disk and rectangle.
 #include "tracer/geometry/axis_frame.h"
+#include "tracer/geometry/rectangle.h"
 #include "tracer/geometry/shapes.h"
 #include "tracer/geometry/triangle_test.h"
 
@@ -28,9 +29,11 @@ bool passes_within(const ObjectRay& ray, const std::array<glm::dvec3, 4>& corner
     const ShearedRay sheared = shear(ray);
     std::array<glm::dvec2, 4> p;
     for (std::size_t i = 0; i < 4; ++i) {
-        const glm::dvec3 from_ray = corners[i] - sheared.origin;
-        p[i] = {from_ray[sheared.kx] - sheared.sx * from_ray[sheared.kz],
-                from_ray[sheared.ky] - sheared.sy * from_ray[sheared.kz]};
+        // One by one: an index into what was just put together makes processors wait.
+        const auto from_ray = [&](int axis) { return corners[i][axis] - sheared.origin[axis]; };
+        const double ahead = from_ray(sheared.kz);
+        p[i] = {from_ray(sheared.kx) - sheared.sx * ahead,
+                from_ray(sheared.ky) - sheared.sy * ahead};
     }
     bool left = true;
     bool right = true;
@@ -61,23 +64,31 @@ ShapeHits intersect(const Disk& disk, const ObjectRay& ray) {
     return {{{hit}}, 1};
 }
 
-ShapeHits intersect(const Rectangle& rectangle, const ObjectRay& ray) {
+bool meet_within(const Rectangle& rectangle, const ObjectRay& ray, ShapeHit& hit) {
     const glm::dvec3& a = rectangle.corner;
-    const glm::dvec3 b = a + rectangle.edge_u;
-    const glm::dvec3 d = a + rectangle.edge_v;
-    if (!passes_within(ray, {a, b, b + rectangle.edge_v, d})) return {};
     const glm::dvec3 normal = glm::cross(rectangle.edge_u, rectangle.edge_v);
     const auto t = meet_plane(ray, a, normal);
-    if (!t) return {};
+    if (!t) return false;
     const glm::dvec3 from_corner = (ray.origin - a) + *t * ray.direction;
     const double squared_area = glm::dot(normal, normal);
     const double u = glm::dot(glm::cross(from_corner, rectangle.edge_v), normal) / squared_area;
     const double v = glm::dot(glm::cross(rectangle.edge_u, from_corner), normal) / squared_area;
-    ShapeHit hit;
     hit.t = *t;
+    hit.uv.x = std::clamp(u, 0.0, 1.0);
+    hit.uv.y = std::clamp(v, 0.0, 1.0);
     hit.normal = normal;
-    hit.uv = {std::clamp(u, 0.0, 1.0), std::clamp(v, 0.0, 1.0)};
-    return {{{hit}}, 1};
+    hit.primitive = 0;
+    return true;
+}
+
+ShapeHits intersect(const Rectangle& rectangle, const ObjectRay& ray) {
+    const glm::dvec3& a = rectangle.corner;
+    const glm::dvec3 b = a + rectangle.edge_u;
+    const glm::dvec3 d = a + rectangle.edge_v;
+    ShapeHits hits;
+    if (!passes_within(ray, {a, b, b + rectangle.edge_v, d})) return hits;
+    if (meet_within(rectangle, ray, hits.hit[0])) hits.count = 1;
+    return hits;
 }
 
 }  // namespace raypick
