@@ -1,5 +1,6 @@
 #include "tracer/accel/triangle_surfaces.h"
 
+#include <algorithm>
 #include <limits>
 #include <variant>
 
@@ -18,15 +19,15 @@ namespace hn = hwy::HWY_NAMESPACE;
 // differs.
 class TriangleKernel {
 public:
-    explicit TriangleKernel(const TriangleSurfaces::Arrays& arrays) : arrays_(arrays) {}
+    explicit TriangleKernel(TriangleSurfaces::Block& block) : block_(block) {}
 
-    void run() const {
-        for (std::size_t i = 0; i < arrays_.count; i += hn::Lanes(kDoubles))
+    HWY_INLINE void run(std::size_t count) const {
+        for (std::size_t i = 0; i < count; i += hn::Lanes(kDoubles))
             step(i);
     }
 
 private:
-    using Doubles = hn::ScalableTag<double>;
+    using Doubles = hn::CappedTag<double, TriangleSurfaces::kLanes>;
     using Floats = hn::Rebind<float, Doubles>;
     using V = hn::Vec<Doubles>;
     static constexpr Doubles kDoubles{};
@@ -68,16 +69,18 @@ private:
         return plus(plus(times(weights.x, a), times(weights.y, b)), times(weights.z, c));
     }
 
-    HWY_INLINE V load(std::size_t array, std::size_t i) const {
-        return hn::PromoteTo(kDoubles, hn::LoadU(kFloats, arrays_.in[array] + i));
+    HWY_INLINE V load(std::size_t row, std::size_t i) const {
+        return hn::PromoteTo(kDoubles,
+                             hn::LoadU(kFloats, &block_.in[row * TriangleSurfaces::kLanes + i]));
     }
     HWY_INLINE V3 load3(std::size_t first, std::size_t i) const {
         return {load(first, i), load(first + 1, i), load(first + 2, i)};
     }
     HWY_INLINE void store(std::size_t first, std::size_t i, const V3& a, float more = 0.0f) const {
-        const auto put = [&](std::size_t array, V v) HWY_ATTR {
+        const auto put = [&](std::size_t row, V v) HWY_ATTR {
             const auto rounded = hn::DemoteTo(kFloats, v);
-            hn::StoreU(hn::Add(rounded, hn::Set(kFloats, more)), kFloats, arrays_.out[array] + i);
+            hn::StoreU(hn::Add(rounded, hn::Set(kFloats, more)), kFloats,
+                       &block_.out[row * TriangleSurfaces::kLanes + i]);
         };
         put(first, a.x);
         put(first + 1, a.y);
@@ -144,7 +147,7 @@ private:
         const V scale = hn::Div(number(-1.0), dot(normal, direction));
         const V3 w = weights(q, edge_b, edge_c, scale, u, v);
         const V3 met = plus(origin, times(load(In::kT, i), direction));
-        hn::StoreU(room(w, edge_b, edge_c, normal, met), kDoubles, arrays_.room + i);
+        hn::StoreU(room(w, edge_b, edge_c, normal, met), kDoubles, block_.room.data() + i);
 
         const V3 position = blend(w, a, b, c);
         const V magnitude = hn::Max(hn::Max(largest(a), largest(b)), largest(c));
@@ -159,11 +162,13 @@ private:
         store_normals(i, normal, u, v);
     }
 
-    const TriangleSurfaces::Arrays& arrays_;
+    TriangleSurfaces::Block& block_;
 };
 
-void find_triangles(const TriangleSurfaces::Arrays& arrays) {
-    TriangleKernel(arrays).run();
+void find_triangles(std::span<TriangleSurfaces::Block> blocks, std::size_t count) {
+    constexpr std::size_t kLanes = TriangleSurfaces::kLanes;
+    for (std::size_t first = 0; first < count; first += kLanes)
+        TriangleKernel(blocks[first / kLanes]).run(std::min(kLanes, count - first));
 }
 
 }  // namespace raypick::HWY_NAMESPACE
@@ -180,30 +185,18 @@ bool TriangleSurfaces::takes(const HitObject& at) {
            at.object_from_world.is_identity();
 }
 
-void TriangleSurfaces::grow() {
-    constexpr std::size_t kMostLanes = 64;  // wider than any vector
-    const std::size_t room = 2 * wanted_.size() + kMostLanes;
-    wanted_.resize(room);
-    room_.resize(room + kMostLanes);
-    for (std::vector<float>& array : in_)
-        array.resize(room + kMostLanes);
-    for (std::vector<float>& array : out_)
-        array.resize(room + kMostLanes);
-}
-
-void TriangleSurfaces::put(std::size_t first, const glm::vec3& v) {
-    in_[first][count_] = v.x;
-    in_[first + 1][count_] = v.y;
-    in_[first + 2][count_] = v.z;
-}
-
-glm::vec3 TriangleSurfaces::got(std::size_t first, std::size_t i) const {
-    return {out_[first][i], out_[first + 1][i], out_[first + 2][i]};
-}
-
 void TriangleSurfaces::add(const Scene& scene, const HitObject& at, const Ray& ray, const Hit& hit,
                            SurfacePoint& result) {
-    if (count_ == wanted_.size()) grow();
+    if (count_ == wanted_.size()) {
+        blocks_.resize(2 * blocks_.size() + 1);
+        wanted_.resize(kLanes * blocks_.size());
+    }
+    float* const in = &blocks_[count_ / kLanes].in[count_ % kLanes];
+    const auto put = [in](std::size_t row, const glm::vec3& v) {
+        in[row * kLanes] = v.x;
+        in[(row + 1) * kLanes] = v.y;
+        in[(row + 2) * kLanes] = v.z;
+    };
     const Mesh& mesh = scene.meshes[std::get<MeshInstance>(at.object.shape).mesh];
     const glm::uvec3& corner = mesh.triangles[hit.primitive];
     const bool smooth = !mesh.normals.empty();
@@ -214,9 +207,9 @@ void TriangleSurfaces::add(const Scene& scene, const HitObject& at, const Ray& r
     }
     put(kOrigin, ray.origin);
     put(kDirection, ray.direction);
-    in_[kT][count_] = hit.t;
-    in_[kU][count_] = hit.uv.x;
-    in_[kV][count_] = hit.uv.y;
+    in[kT * kLanes] = hit.t;
+    in[kU * kLanes] = hit.uv.x;
+    in[kV * kLanes] = hit.uv.y;
     Wanted& wanted = wanted_[count_++];
     wanted.object = &at.object;
     wanted.object_from_world = &at.object_from_world;
@@ -227,33 +220,37 @@ void TriangleSurfaces::add(const Scene& scene, const HitObject& at, const Ray& r
 }
 
 void TriangleSurfaces::find(const Scene& scene) {
-    Arrays arrays;
-    for (std::size_t k = 0; k < kInputs; ++k)
-        arrays.in[k] = in_[k].data();
-    for (std::size_t k = 0; k < kOutputs; ++k)
-        arrays.out[k] = out_[k].data();
-    arrays.room = room_.data();
-    arrays.count = count_;
-    HWY_DYNAMIC_DISPATCH(find_triangles)(arrays);
+    HWY_DYNAMIC_DISPATCH(find_triangles)(blocks_, count_);
     for (std::size_t i = 0; i < count_; ++i) {
         const Wanted& wanted = wanted_[i];
-        SurfacePoint& surface = *wanted.result;
-        if (!(room_[i] > 0.0)) {
+        const Block& block = blocks_[i / kLanes];
+        if (block.room[i % kLanes] > 0.0) {
+            take(wanted, block, i % kLanes);
+        } else {
             set_surface_point(scene,
                               {*wanted.object, *wanted.object_from_world, wanted.material, false},
-                              *wanted.ray, *wanted.hit, surface);
-            continue;
+                              *wanted.ray, *wanted.hit, *wanted.result);
         }
-        surface.position = got(kPosition, i);
-        surface.position_error = got(kError, i);
-        surface.geometric_normal = got(kGeometric, i);
-        surface.shading_normal = got(kShading, i);
-        surface.uv = wanted.hit->uv;
-        surface.texture_uv = glm::vec2(0.0f);
-        surface.dpdu = surface.dpdv = glm::vec3(0.0f);
-        surface.front_face = wanted.hit->front_face;
-        surface.material = wanted.material;
     }
+}
+
+void TriangleSurfaces::take(const Wanted& wanted, const Block& block, std::size_t lane) {
+    const float* const out = &block.out[lane];
+    const auto got = [out](std::size_t row, glm::vec3& v) {
+        v.x = out[row * kLanes];
+        v.y = out[(row + 1) * kLanes];
+        v.z = out[(row + 2) * kLanes];
+    };
+    SurfacePoint& surface = *wanted.result;
+    got(kPosition, surface.position);
+    got(kError, surface.position_error);
+    got(kGeometric, surface.geometric_normal);
+    got(kShading, surface.shading_normal);
+    surface.uv = wanted.hit->uv;
+    surface.texture_uv = glm::vec2(0.0f);
+    surface.dpdu = surface.dpdv = glm::vec3(0.0f);
+    surface.front_face = wanted.hit->front_face;
+    surface.material = wanted.material;
 }
 
 }  // namespace raypick

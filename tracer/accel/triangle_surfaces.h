@@ -25,8 +25,8 @@ public:
     // Sets the result of each hit added since clear().
     void find(const Scene& scene);
 
-    // One float of each hit goes into each of these arrays: corners, their normals (0 where there
-    // are none), the ray, t and uv.
+    // One float of each hit goes into each of these rows: corners, their normals (0 where there are
+    // none), the ray, t and uv.
     static constexpr std::size_t kCorners = 0;
     static constexpr std::size_t kNormals = 9;
     static constexpr std::size_t kOrigin = 18;
@@ -41,12 +41,13 @@ public:
     static constexpr std::size_t kGeometric = 6;
     static constexpr std::size_t kShading = 9;
     static constexpr std::size_t kOutputs = 12;
-    // Arrays of `count` floats, rounded up to whole vectors.
-    struct Arrays {
-        std::array<const float*, kInputs> in{};
-        std::array<float*, kOutputs> out{};
-        double* room = nullptr;  // > 0: far from the edges; others want a closer look
-        std::size_t count = 0;
+    // Some hits side by side: rows of one block are always as far apart, so that all of a hit's
+    // numbers are found from one place.
+    static constexpr std::size_t kLanes = 16;
+    struct Block {
+        alignas(64) std::array<float, kInputs * kLanes> in{};
+        std::array<float, kOutputs * kLanes> out{};
+        std::array<double, kLanes> room{};  // > 0: far from the edges; others want a closer look
     };
 
 private:
@@ -59,15 +60,11 @@ private:
         SurfacePoint* result = nullptr;
     };
 
-    void grow();
-    void put(std::size_t first, const glm::vec3& v);
-    [[nodiscard]] glm::vec3 got(std::size_t first, std::size_t i) const;
+    static void take(const Wanted& wanted, const Block& block, std::size_t lane);
 
     std::size_t count_ = 0;
-    std::vector<Wanted> wanted_;
-    std::array<std::vector<float>, kInputs> in_;
-    std::array<std::vector<float>, kOutputs> out_;
-    std::vector<double> room_;
+    std::vector<Wanted> wanted_;  // as long as the blocks have room for
+    std::vector<Block> blocks_;
 };
 
 }  // namespace raypick
