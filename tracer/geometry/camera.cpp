@@ -87,16 +87,18 @@ RayGenerator::RayGenerator(const Camera& camera, ImageSize size)
       orthographic_(camera.projection == Projection::orthographic) {}
 
 Ray RayGenerator::ray(ImagePoint point) const {
-    const double ax = width_ * (point.c / size_.cols - 0.5);
-    const double ay = -height_ * (point.r / size_.rows - 0.5);
+    return ray(aside(point.c), above(point.r));
+}
+
+Ray RayGenerator::ray(double aside, double above) const {
     if (orthographic_) {
         Ray ray;
-        ray.origin = glm::vec3(eye_ + ax * frame_.vx + ay * frame_.vy);
+        ray.origin = glm::vec3(eye_ + aside * frame_.vx + above * frame_.vy);
         ray.direction = glm::vec3(-frame_.vz);
         ray.t_min = static_cast<float>(near_);
         return ray;
     }
-    const glm::dvec3 u = ax * frame_.vx + ay * frame_.vy - frame_.vz;
+    const glm::dvec3 u = aside * frame_.vx + above * frame_.vy - frame_.vz;
     const double length = glm::length(u);
     Ray ray;
     ray.origin = glm::vec3(eye_);
@@ -106,9 +108,7 @@ Ray RayGenerator::ray(ImagePoint point) const {
 }
 
 Ray RayGenerator::lens_ray(ImagePoint point, const glm::dvec2& lens, double focus_distance) const {
-    const double ax = width_ * (point.c / size_.cols - 0.5);
-    const double ay = -height_ * (point.r / size_.rows - 0.5);
-    const glm::dvec3 across = ax * frame_.vx + ay * frame_.vy;
+    const glm::dvec3 across = aside(point.c) * frame_.vx + above(point.r) * frame_.vy;
     const glm::dvec3 on_lens = lens.x * frame_.vx + lens.y * frame_.vy;
     const glm::dvec3 centre = orthographic_ ? eye_ + across : eye_;
     const glm::dvec3 to_focus =

@@ -59,6 +59,11 @@ public:
     RayGenerator(const Camera& camera, ImageSize size);
 
     [[nodiscard]] Ray ray(ImagePoint point) const;
+    // The same in steps, for callers that keep what belongs to a row or a column: how far to the
+    // side of the view axis the point lies, and how far above, in the image at distance 1.
+    [[nodiscard]] double aside(double c) const { return width_ * (c / size_.cols - 0.5); }
+    [[nodiscard]] double above(double r) const { return -height_ * (r / size_.rows - 0.5); }
+    [[nodiscard]] Ray ray(double aside, double above) const;
     // The ray through the same point of the plane at `focus_distance` (> 0) in front of the eye
     // that comes from another point of a thin lens: `lens`, along vx and vy from the lens's centre,
     // scene units. Everything in that plane is sharp.

@@ -70,7 +70,12 @@ PixelTracer::PixelTracer(std::shared_ptr<const Accel> accel, const Camera& camer
       look_(shade_scene(*accel_, {}, only_a_look())),
       pattern_(settings),
       focus_distance_(settings.focus_distance > 0.0 ? settings.focus_distance
-                                                    : glm::distance(camera.eye, camera.at)) {}
+                                                    : glm::distance(camera.eye, camera.at)) {
+    for (int col = 0; col < size.cols; ++col)
+        aside_.push_back(rays_.aside(pixel_centre({0, col}).c));
+    for (int row = 0; row < size.rows; ++row)
+        above_.push_back(rays_.above(pixel_centre({row, 0}).r));
+}
 
 // Nothing else is random on the way of a ray than points on lights.
 std::uint64_t PixelTracer::seed_of(std::size_t ray) const {
@@ -78,7 +83,9 @@ std::uint64_t PixelTracer::seed_of(std::size_t ray) const {
 }
 
 EyeRay PixelTracer::centre_ray(Pixel pixel) const {
-    return {rays_.ray(pixel_centre(pixel)), cone_, seed_of(size_.index(pixel))};
+    const auto row = static_cast<std::size_t>(pixel.row);
+    const auto col = static_cast<std::size_t>(pixel.col);
+    return {rays_.ray(aside_[col], above_[row]), cone_, seed_of(size_.index(pixel))};
 }
 
 EyeRay PixelTracer::corner_ray(Pixel pixel) const {

@@ -68,6 +68,8 @@ private:
     ImageSize size_;
     RenderSettings settings_;
     RayGenerator rays_;
+    std::vector<double> aside_;  // of each column's and row's pixel centres
+    std::vector<double> above_;
     RayCone cone_;  // of a ray that stands for a whole pixel
     ShadeScene scene_;
     ShadeScene look_;  // without lights and further rays: no more than a look at the surface

@@ -119,7 +119,8 @@ void BatchTracer::load_rays(const Step& step, std::span<const std::uint32_t> por
 // Follows the rays at work to where they end, through surfaces that are hidden inside of glass of a
 // higher priority, and sends on the next generation.
 void BatchTracer::find_points(const Step& step) {
-    points_.clear();
+    point_count_ = 0;
+    if (points_.size() < at_work_.size()) points_.resize(at_work_.size());
     materials_.clear();
     materials_.reserve(kPortion + 1);  // points hold on to them
     for (int hidden = 0; !at_work_.empty(); ++hidden) {
@@ -188,8 +189,7 @@ bool BatchTracer::arrive(const Step& step, int hidden, std::size_t i) {
     SurfaceMaterial* with_maps = found.material->has_maps ? &materials_.emplace_back() : nullptr;
     const ShadingPoint point =
         shading_point(scene, found, ray.direction, path.cone.width, with_maps);
-    points_.push_back(new_end_);
-    RayEnd& end = points_.back();
+    RayEnd& end = points_[point_count_++];
     end.ray = at_work_[i];
     set_lit_point(point, end.point);
     if (step.depth == 1) step.job.results[path.parent].normal = point.normal;
@@ -238,13 +238,13 @@ void BatchTracer::send_branches(const Step& step, std::uint32_t from, const Shad
 // One light after the other, so that rays to the same light travel together.
 void BatchTracer::light_points(const Step& step) {
     const std::vector<PreparedLight>& lights = step.job.scene.lights;
-    for (std::size_t light = 0; light < lights.size() && !points_.empty(); ++light) {
+    for (std::size_t light = 0; light < lights.size() && point_count_ != 0; ++light) {
         for (int sample = 0; sample < lights[light].count(); ++sample) {
             if (step.job.stop.stop_requested()) return;
             light_points_by(step, light, sample);
         }
     }
-    for (const RayEnd& end : points_)
+    for (const RayEnd& end : std::span(points_).first(point_count_))
         step.at.rays[end.ray].colour *= end.point.material->opacity;
 }
 
@@ -275,12 +275,12 @@ void BatchTracer::gather_light(const Step& step, std::size_t light, int sample) 
     const ShadeScene& scene = step.job.scene;
     const PreparedLight& source = scene.lights[light];
     const bool shadows = scene.settings.shadows;
-    if (arriving_.size() < points_.size()) {
-        arriving_.resize(points_.size());
-        shadow_rays_.resize(points_.size());
+    if (arriving_.size() < point_count_) {
+        arriving_.resize(point_count_);
+        shadow_rays_.resize(point_count_);
     }
     arriving_count_ = 0;
-    for (std::uint32_t i = 0; i < points_.size(); ++i) {
+    for (std::uint32_t i = 0; i < point_count_; ++i) {
         const LitPoint& point = points_[i].point;
         const std::uint64_t seed =
             source.side > 1 ? light_seed(scene, step.at.rays[points_[i].ray].seed, light) : 0;

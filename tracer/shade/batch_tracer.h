@@ -112,10 +112,9 @@ private:
 
     std::deque<Generation> generations_;  // by depth - 1
 
-    // What new ones are copies of: emplace_back() would zero them first, by an instruction that
+    // What new rays are copies of: emplace_back() would zero them first, by an instruction that
     // takes its time.
     PathRay new_ray_;
-    RayEnd new_end_;
 
     // Of the portion at work.
     std::vector<std::uint32_t> at_work_;  // rays on their way
@@ -126,7 +125,8 @@ private:
     TriangleSurfaces triangles_;
     Crossing crossing_;
     Branches branches_;
-    std::vector<RayEnd> points_;
+    std::vector<RayEnd> points_;  // the first point_count_ are in use
+    std::size_t point_count_ = 0;
     std::vector<SurfaceMaterial> materials_;  // with maps, of some of the points
     std::vector<Arriving> arriving_;  // the first arriving_count_ are in use, as of shadow_rays_
     std::vector<Ray> shadow_rays_;

@@ -14,8 +14,9 @@ Boundary boundary_of_body(const ShadeScene& scene, const FoundHit& found, const 
                           const Interior* interior, Crossing& room) {
     const Scene& world = *scene.scene;
     const SurfacePoint& surface = found.surface;
-    room = cross_surface(world, interior != nullptr ? *interior : Interior{},
-                         body_of(*found.object, hit), surface.material, surface.front_face);
+    static const Interior kNone;
+    cross_surface(world, interior != nullptr ? *interior : kNone, body_of(*found.object, hit),
+                  surface.material, surface.front_face, room);
     const Crossing& crossing = room;
     Boundary boundary;
     boundary.crossing = &room;

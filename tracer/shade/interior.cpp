@@ -56,9 +56,9 @@ void Interior::begin_inside(const Body& body, MaterialId material) {
     ++count_;
 }
 
-Crossing cross_surface(const Scene& scene, const Interior& interior, const Body& body,
-                       MaterialId material, bool front_face) {
-    Crossing crossing{interior, {}, kNoMaterial, kNoMaterial};
+void cross_surface(const Scene& scene, const Interior& interior, const Body& body,
+                   MaterialId material, bool front_face, Crossing& crossing) {
+    crossing.before = interior;
     const bool inside = interior.holds(body);
     if (front_face && inside) crossing.before.leave(body);
     if (!front_face && !inside) crossing.before.begin_inside(body, material);
@@ -70,7 +70,6 @@ Crossing cross_surface(const Scene& scene, const Interior& interior, const Body&
     }
     crossing.from = crossing.before.medium(scene);
     crossing.to = crossing.after.medium(scene);
-    return crossing;
 }
 
 bool is_there(const Scene& scene, const Crossing& crossing, MaterialId surface) {

@@ -28,6 +28,17 @@ bool fills(const Material& material);
 // The bodies around a point of a ray's path, in the order in which they were entered.
 class Interior {
 public:
+    Interior() = default;
+    ~Interior() = default;
+    Interior(const Interior& other) { *this = other; }
+    // Only what is there: mostly one or none.
+    Interior& operator=(const Interior& other) {
+        count_ = other.count_;
+        for (std::size_t i = 0; i < count_; ++i)
+            entries_[i] = other.entries_[i];
+        return *this;
+    }
+
     // What is there: the material of the highest priority, of those the one entered last;
     // kNoMaterial is air.
     [[nodiscard]] MaterialId medium(const Scene& scene) const;
@@ -65,8 +76,9 @@ struct Crossing {
 bool is_there(const Scene& scene, const Crossing& crossing, MaterialId surface);
 
 // A ray that leaves a body which it never entered began inside of it (its origin was there, or in
-// an open mesh). One that enters a body twice had left it through a hole.
-Crossing cross_surface(const Scene& scene, const Interior& interior, const Body& body,
-                       MaterialId material, bool front_face);
+// an open mesh). One that enters a body twice had left it through a hole. `interior`: before, none
+// of the crossing's own.
+void cross_surface(const Scene& scene, const Interior& interior, const Body& body,
+                   MaterialId material, bool front_face, Crossing& crossing);
 
 }  // namespace raypick

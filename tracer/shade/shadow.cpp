@@ -23,9 +23,9 @@ public:
         bool there = true;
         MaterialId medium = interior_.medium(world);
         if (found.material->fills) {
-            const Crossing crossing =
-                cross_surface(world, interior_, body_of(*found.object, hit), found.surface.material,
-                              found.surface.front_face);
+            Crossing crossing;
+            cross_surface(world, interior_, body_of(*found.object, hit), found.surface.material,
+                          found.surface.front_face, crossing);
             medium = crossing.from;
             interior_ = crossing.after;
             there = is_there(world, crossing, found.surface.material);
