@@ -3,6 +3,7 @@
 #include "tracer/accel/hit.h"
 #include "tracer/error.h"
 #include "tracer/render/image_files.h"
+#include "tracer/render/large_pages.h"
 #include "tracer/temporary_file.h"
 
 #include <algorithm>
@@ -27,11 +28,11 @@ Image make_image(ImageSize size) {
     const std::size_t count = size.pixel_count();
     Image image;
     image.size = size;
-    image.colour.assign(count, glm::vec3(0.0f));
-    image.depth.assign(count, std::numeric_limits<float>::infinity());
-    image.normal.assign(count, glm::vec3(0.0f));
-    image.object.assign(count, kNoObject);
-    image.primitive.assign(count, 0xffffffffu);
+    fill_large(image.colour, count, glm::vec3(0.0f));
+    fill_large(image.depth, count, std::numeric_limits<float>::infinity());
+    fill_large(image.normal, count, glm::vec3(0.0f));
+    fill_large(image.object, count, kNoObject);
+    fill_large(image.primitive, count, 0xffffffffu);
     return image;
 }
 
