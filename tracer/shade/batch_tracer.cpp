@@ -220,7 +220,7 @@ void BatchTracer::send_branches(const Step& step, std::uint32_t from, const Shad
         count_branch(step.job.counts, branch.kind, step.depth + 1);
         step.next.rays.push_back(new_ray_);
         PathRay& onwards = step.next.rays.back();
-        onwards.ray = leaving(point, branch.direction);
+        set_leaving(point, branch.direction, onwards.ray);
         onwards.share = branch.share;
         onwards.parent = from;
         onwards.cone = path.cone;
@@ -257,15 +257,17 @@ void BatchTracer::light_points_by(const Step& step, std::size_t light, int sampl
         }
         return;
     }
+    const bool tinted = step.job.scene.settings.glass_shadows == GlassShadows::tinted;
     find_shares(step, step.job.scene.lights[light]);
     std::size_t blocked = 0;
     for (std::size_t i = 0; i < arriving_count_; ++i) {
-        if (shares_[i] == glm::vec3(0.0f)) {
+        if (blocked_[i] != 0) {
             ++blocked;
             continue;
         }
         const RayEnd& end = points_[arriving_[i].point];
-        step.at.rays[end.ray].colour += lit_by(end.point, arriving_[i].light, shares_[i]);
+        const glm::vec3 share = tinted ? shares_[i] : glm::vec3(1.0f);
+        step.at.rays[end.ray].colour += lit_by(end.point, arriving_[i].light, share);
     }
     step.job.counts.shadow_blocked += blocked;
 }
@@ -302,19 +304,18 @@ void BatchTracer::find_shares(const Step& step, const PreparedLight& /*light*/) 
     const ShadeScene& scene = step.job.scene;
     const std::span<const Ray> rays = std::span(shadow_rays_).first(arriving_count_);
     count_shadows(step.job.counts, rays.size(), step.depth);
-    shares_.assign(rays.size(), glm::vec3(1.0f));
+    blocked_.resize(rays.size());
     if (scene.settings.glass_shadows == GlassShadows::tinted) {
+        shares_.resize(rays.size());
         for (std::size_t i = 0; i < rays.size(); ++i) {
             if (step.job.stop.stop_requested()) return;
             const PathRay& path = step.at.rays[points_[arriving_[i].point].ray];
             shares_[i] = transmittance(scene, rays[i], step.at.interior_of(path), path.cone.width);
+            blocked_[i] = shares_[i] == glm::vec3(0.0f) ? 1 : 0;
         }
         return;
     }
-    blocked_.resize(rays.size());
     scene.accel->occluded(rays, blocked_);
-    for (std::size_t i = 0; i < blocked_.size(); ++i)
-        if (blocked_[i] != 0) shares_[i] = glm::vec3(0.0f);
 }
 
 }  // namespace raypick

@@ -132,7 +132,7 @@ private:
     std::vector<Ray> shadow_rays_;
     std::size_t arriving_count_ = 0;
     std::vector<std::uint8_t> blocked_;
-    std::vector<glm::vec3> shares_;
+    std::vector<glm::vec3> shares_;  // where shadows are tinted
 };
 
 }  // namespace raypick

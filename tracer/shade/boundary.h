@@ -67,10 +67,18 @@ inline glm::vec3 own_light(const ShadeScene& scene, const ShadingPoint& point) {
     return point.material.emissive + point.material.ambient * scene.scene->ambient;
 }
 
-// A ray from the point, off its surface.
+// Lets a new ray leave the point, off its surface. In place: a copy of a ray just put together
+// makes processors wait for its parts.
+inline void set_leaving(const ShadingPoint& point, const glm::vec3& direction, Ray& ray) {
+    ray.origin = glm::dot(point.geometric, direction) > 0.0f
+                     ? point.outside
+                     : offset_origin(point.surface, direction);
+    ray.direction = direction;
+}
 inline Ray leaving(const ShadingPoint& point, const glm::vec3& direction) {
-    if (glm::dot(point.geometric, direction) > 0.0f) return Ray{point.outside, direction};
-    return Ray{offset_origin(point.surface, direction), direction};
+    Ray ray;
+    set_leaving(point, direction, ray);
+    return ray;
 }
 
 }  // namespace raypick
