@@ -6,6 +6,7 @@
 #include "tracer/accel/searches.h"
 #include "tracer/geometry/cone.h"
 #include "tracer/geometry/ray.h"
+#include "tracer/geometry/rectangle.h"
 
 #include <glm/geometric.hpp>
 
@@ -120,6 +121,24 @@ bool offer_cone(const Passage& passage, const Cone& cone, std::uint32_t element,
         if (passage.admits(hit) && search.offer(hit)) return true;
     }
     return false;
+}
+
+// The same of a rectangle.
+template <typename Search>
+bool offer_rectangle(const Passage& passage, const Rectangle& rectangle, Search& search) {
+    const auto root = meet_plane_of(rectangle, passage.local);
+    if (!root) return false;
+    const auto t = static_cast<float>(*root);
+    if (!passage.in_range(t, search.limit())) return false;
+    if (!passes_within(rectangle, passage.local)) return false;
+    Hit hit{passage.object.id, 0, t, glm::vec2(0.0f),
+            glm::dot(rectangle_normal(rectangle), passage.local.direction) < 0.0};
+    if (!shows(passage.object.sides, hit.front_face)) return false;
+    ShapeHit exact;
+    if (wants_uv<Search>(passage) && meet_within(rectangle, passage.local, exact)) {
+        hit.uv = glm::vec2(exact.uv);
+    }
+    return passage.admits(hit) && search.offer(hit);
 }
 
 }  // namespace raypick

@@ -65,9 +65,8 @@ void trace_unbounded(const AccelState& state, const Ray& any_ray, const RayQuery
                      Search& search) {
     if (state.unbounded.empty()) return;
     const Ray ray = from_origin(any_ray);
-    RayInSpace world(ray, state.reach);
     for (const std::uint32_t object : state.unbounded) {
-        if (trace_entry(state, {object, {}}, ray, world, query, search)) return;
+        if (trace_simple(state, object, ray, query, search)) return;
     }
 }
 

@@ -64,9 +64,23 @@ ShapeHits intersect(const Disk& disk, const ObjectRay& ray) {
     return {{{hit}}, 1};
 }
 
+glm::dvec3 rectangle_normal(const Rectangle& rectangle) {
+    return glm::cross(rectangle.edge_u, rectangle.edge_v);
+}
+
+std::optional<double> meet_plane_of(const Rectangle& rectangle, const ObjectRay& ray) {
+    return meet_plane(ray, rectangle.corner, rectangle_normal(rectangle));
+}
+
+bool passes_within(const Rectangle& rectangle, const ObjectRay& ray) {
+    const glm::dvec3& a = rectangle.corner;
+    const glm::dvec3 b = a + rectangle.edge_u;
+    return passes_within(ray, {a, b, b + rectangle.edge_v, a + rectangle.edge_v});
+}
+
 bool meet_within(const Rectangle& rectangle, const ObjectRay& ray, ShapeHit& hit) {
     const glm::dvec3& a = rectangle.corner;
-    const glm::dvec3 normal = glm::cross(rectangle.edge_u, rectangle.edge_v);
+    const glm::dvec3 normal = rectangle_normal(rectangle);
     const auto t = meet_plane(ray, a, normal);
     if (!t) return false;
     const glm::dvec3 from_corner = (ray.origin - a) + *t * ray.direction;
@@ -82,11 +96,8 @@ bool meet_within(const Rectangle& rectangle, const ObjectRay& ray, ShapeHit& hit
 }
 
 ShapeHits intersect(const Rectangle& rectangle, const ObjectRay& ray) {
-    const glm::dvec3& a = rectangle.corner;
-    const glm::dvec3 b = a + rectangle.edge_u;
-    const glm::dvec3 d = a + rectangle.edge_v;
     ShapeHits hits;
-    if (!passes_within(ray, {a, b, b + rectangle.edge_v, d})) return hits;
+    if (!passes_within(rectangle, ray)) return hits;
     if (meet_within(rectangle, ray, hits.hit[0])) hits.count = 1;
     return hits;
 }

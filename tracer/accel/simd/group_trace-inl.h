@@ -71,6 +71,10 @@ private:
     void each_on_its_own(const TopEntry& entry, RayMask mask) {
         each_ray(mask, [&](std::size_t ray) HWY_ATTR {
             auto one = one_of(search_, ray, entry.object);
+            if (state_.instances[entry.object].tree == nullptr) {
+                trace_simple(state_, entry.object, rays_[ray], query_, one);
+                return;
+            }
             RayInSpace world(rays_[ray], state_.reach);
             trace_entry(state_, entry, rays_[ray], world, query_, one);
         });

@@ -88,6 +88,10 @@ struct ShapeTrace {
         return offer(passage, raypick::intersect(shape, passage.local), std::nullopt, search);
     }
 
+    bool operator()(const Rectangle& rectangle) const {
+        return offer_rectangle(passage, rectangle, search);
+    }
+
     bool operator()(const SphereSetInstance& instance) const {
         const SphereSet& set = passage.scene.sphere_sets[instance.set];
         return each_primitive([&](std::uint32_t primitive) HWY_ATTR {
@@ -186,15 +190,27 @@ private:
     }
 };
 
+// An object without a tree.
+template <typename Search>
+bool trace_simple(const AccelState& state, std::uint32_t index, const Ray& ray,
+                  const RayQuery& query, Search& search) {
+    const Object& object = state.scene->objects[index];
+    if ((object.mask & query.mask) == 0) return false;
+    const Instance& instance = state.instances[index];
+    const Passage passage{*state.scene, object, instance, ray, query, object_ray(instance, ray)};
+    return std::visit(ShapeTrace<Search>{passage, nullptr, {}, search}, object.shape);
+}
+
 // `world` is the ray.
 template <typename Search>
 bool trace_entry(const AccelState& state, const TopEntry& entry, const Ray& ray, RayInSpace& world,
                  const RayQuery& query, Search& search) {
+    const Instance& instance = state.instances[entry.object];
+    if (instance.tree == nullptr) return trace_simple(state, entry.object, ray, query, search);
     const Object& object = state.scene->objects[entry.object];
     if ((object.mask & query.mask) == 0) return false;
-    const Instance& instance = state.instances[entry.object];
     const Passage passage{*state.scene, object, instance, ray, query, object_ray(instance, ray)};
-    if (instance.identity || instance.tree == nullptr) {
+    if (instance.identity) {
         return std::visit(ShapeTrace<Search>{passage, &world, entry.part, search}, object.shape);
     }
     RayInSpace local(passage.local, instance);
@@ -226,10 +242,10 @@ bool trace_top(const AccelState& state, const WideRef& part, const Ray& ray, Ray
 template <typename Search>
 void trace_ray(const AccelState& state, const Ray& ray, const RayQuery& query, Search& search) {
     if (!usable(ray)) return;
-    RayInSpace world(ray, state.reach);
     for (const std::uint32_t object : state.unbounded) {
-        if (trace_entry(state, {object, {}}, ray, world, query, search)) return;
+        if (trace_simple(state, object, ray, query, search)) return;
     }
+    RayInSpace world(ray, state.reach);
     if (!state.top.empty()) trace_top(state, state.top.root, ray, world, query, search);
 }
 
