@@ -14,8 +14,8 @@ Boundary boundary_of_body(const ShadeScene& scene, const FoundHit& found, const 
                           const Interior* interior, Crossing& room) {
     const Scene& world = *scene.scene;
     const SurfacePoint& surface = found.surface;
-    static const Interior kNone;
-    cross_surface(world, interior != nullptr ? *interior : kNone, body_of(*found.object, hit),
+    static const Interior nowhere;
+    cross_surface(world, interior != nullptr ? *interior : nowhere, body_of(*found.object, hit),
                   surface.material, surface.front_face, room);
     const Crossing& crossing = room;
     Boundary boundary;

@@ -27,11 +27,11 @@ struct DocumentOpener::Work {
     std::atomic<bool> ended = false;  // `result` is written before, read after
     std::optional<OpenResult> result;
 
-    Document open();
+    [[nodiscard]] Document open() const;
     void run();
 };
 
-Document DocumentOpener::Work::open() {
+Document DocumentOpener::Work::open() const {
     LoadedScene loaded = load_scene(file, options);
     Document document;
     document.file = file;

@@ -319,7 +319,8 @@ private:
         const Rays d;
         for (std::size_t i = 0; i < kGroup; i += kAtOnce) {
             // Of one half of them in turns: number k and number k + 4 of each ray.
-            RayFloats a[4], b[4];
+            RayFloats a[4];
+            RayFloats b[4];
             const auto* first = reinterpret_cast<const float*>(&rays[i]);
             const auto* second = reinterpret_cast<const float*>(&rays[i + kAtOnce / 2]);
             hn::LoadInterleaved4(d, first, a[0], a[1], a[2], a[3]);
