@@ -13,10 +13,6 @@ namespace raypick {
 
 namespace {
 
-std::array<std::uint32_t, 3> bits_of(const glm::vec3& position) {
-    return std::bit_cast<std::array<std::uint32_t, 3>>(position);
-}
-
 // A patch that is being put together.
 class Collector {
 public:
@@ -46,35 +42,45 @@ public:
     void clear() { patch_ = {}; }
     void finish_leaf() { patch_.last = 1; }
 
-    void write(TrianglePatches::Block* to) const {
-        auto* at = reinterpret_cast<std::byte*>(to);
+    void append_to(std::vector<TrianglePatches::Block>& blocks) const {
+        const std::size_t first = blocks.size();
+        blocks.resize(first + size());
+        auto* at = reinterpret_cast<std::byte*>(blocks.data() + first);
         const auto put = [&at](const void* from, std::size_t bytes) {
             std::memcpy(at, from, bytes);
             at += bytes;
         };
         put(&patch_, sizeof patch_);
         put(primitives_.data(), patch_.triangles * sizeof(std::uint32_t));
-        for (int axis = 0; axis < 3; ++axis) {
-            for (std::size_t i = 0; i < patch_.corners; ++i)
-                put(&positions_[i][axis], sizeof(float));
-        }
+        for (const Coordinates& along : coordinates_)
+            put(along.data(), patch_.corners * sizeof(float));
     }
 
 private:
+    using Coordinates = std::array<std::uint32_t, TrianglePatch::kMostCorners>;  // as bits
+
     // Of the corner at a position, bit for bit; kMostCorners if there is no room for it.
     std::uint32_t number_of(const glm::vec3& position) {
+        const auto at = std::bit_cast<std::array<std::uint32_t, 3>>(position);
+        // All of them without a branch, so that compilers take several at once.
+        std::array<std::uint32_t, TrianglePatch::kMostCorners> differs{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            for (std::size_t i = 0; i < differs.size(); ++i)
+                differs[i] |= coordinates_[axis][i] ^ at[axis];
+        }
         for (std::uint32_t i = 0; i < patch_.corners; ++i) {
-            if (bits_of(positions_[i]) == bits_of(position)) return i;
+            if (differs[i] == 0) return i;
         }
         if (patch_.corners == TrianglePatch::kMostCorners) return TrianglePatch::kMostCorners;
-        positions_[patch_.corners] = position;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            coordinates_[axis][patch_.corners] = at[axis];
         return patch_.corners++;
     }
 
     const Mesh& mesh_;
     TrianglePatch patch_;
     std::array<std::uint32_t, TrianglePatch::kMostTriangles> primitives_{};
-    std::array<glm::vec3, TrianglePatch::kMostCorners> positions_{};
+    std::array<Coordinates, 3> coordinates_{};
 };
 
 // Calls full(collector) for each patch of a leaf.
@@ -92,30 +98,29 @@ void collect(const WideBvh& bvh, const Mesh& mesh, const WideRef& leaf, const Fu
     full(collector);
 }
 
-// Some places in a tree, and where the patches of the leaves among them go.
+// Some places in a tree, and the patches of the leaves among them.
 struct Portion {
     WideBvh& bvh;
     const Mesh& mesh;
     std::size_t begin = 0;  // node
     std::size_t end = 0;
+    std::vector<TrianglePatches::Block> blocks;
 
-    [[nodiscard]] std::size_t blocks() const {
-        std::size_t sum = 0;
+    // A leaf's index counts from the portion's first block then.
+    void collect_leaves() {
         each_leaf([&](std::uint32_t& leaf) {
-            collect(bvh, mesh, {leaf}, [&](const Collector& patch) { sum += patch.size(); });
-        });
-        return sum;
-    }
-
-    void write(TrianglePatches& patches, std::size_t block) const {
-        each_leaf([&](std::uint32_t& leaf) {
-            const auto place = static_cast<std::uint32_t>(block);
-            collect(bvh, mesh, {leaf}, [&](const Collector& patch) {
-                patch.write(patches.blocks.data() + block);
-                block += patch.size();
-            });
+            const auto place = static_cast<std::uint32_t>(blocks.size());
+            collect(bvh, mesh, {leaf}, [&](const Collector& patch) { patch.append_to(blocks); });
             leaf = WideRef::leaf(place).bits;
         });
+        blocks.shrink_to_fit();
+    }
+
+    void move_to(TrianglePatches& patches, std::size_t block) {
+        std::copy(blocks.begin(), blocks.end(),
+                  patches.blocks.begin() + static_cast<std::ptrdiff_t>(block));
+        blocks = {};
+        each_leaf([&](std::uint32_t& leaf) { leaf += static_cast<std::uint32_t>(block); });
     }
 
 private:
@@ -149,18 +154,18 @@ TrianglePatches take_triangles(WideBvh& bvh, const Mesh& mesh, int threads,
     constexpr std::size_t kNodes = 512;
     std::vector<Portion> portions;
     for (std::size_t n = 0; n == 0 || n < bvh.nodes.size(); n += kNodes)
-        portions.push_back({bvh, mesh, n, std::min(bvh.nodes.size(), n + kNodes)});
+        portions.push_back({bvh, mesh, n, std::min(bvh.nodes.size(), n + kNodes), {}});
     std::vector<std::size_t> first(portions.size() + 1);
     parallel_for(portions.size(), threads, stop,
-                 [&](std::size_t i) { first[i + 1] = portions[i].blocks(); });
-    if (stop.stop_requested()) throw Cancelled();
-    for (std::size_t i = 0; i < portions.size(); ++i)
-        first[i + 1] += first[i];
-    make_room(patches, first.back());
-    parallel_for(portions.size(), threads, stop,
-                 [&](std::size_t i) { portions[i].write(patches, first[i]); });
+                 [&](std::size_t i) { portions[i].collect_leaves(); });
     if (stop.stop_requested()) throw Cancelled();
     bvh.indices = {};
+    for (std::size_t i = 0; i < portions.size(); ++i)
+        first[i + 1] = first[i] + portions[i].blocks.size();
+    make_room(patches, first.back());
+    parallel_for(portions.size(), threads, stop,
+                 [&](std::size_t i) { portions[i].move_to(patches, first[i]); });
+    if (stop.stop_requested()) throw Cancelled();
     return patches;
 }
 

@@ -66,10 +66,17 @@ void WideNode::sort_children() {
             for (std::size_t i = 0; i < kWidth; ++i)
                 place[i] += sign * (planes[axis][i] + planes[3 + axis][i]);
         }
-        std::array<std::uint32_t, kWidth> sorted{0, 1, 2, 3, 4, 5, 6, 7};
-        for (std::size_t i = 1; i < kWidth; ++i) {
-            for (std::size_t k = i; k > 0 && place[sorted[k - 1]] < place[sorted[k]]; --k)
-                std::swap(sorted[k - 1], sorted[k]);
+        // Empty boxes have no centre: they come last.
+        for (float& along : place)
+            along = along == along ? along : -std::numeric_limits<float>::infinity();
+        std::array<std::uint32_t, kWidth> sorted{};
+        for (std::uint32_t i = 0; i < kWidth; ++i) {
+            std::uint32_t before = 0;  // how many come first
+            for (std::uint32_t k = 0; k < kWidth; ++k) {
+                const bool tie = place[k] == place[i] && k < i;
+                before += place[k] > place[i] || tie ? 1u : 0u;
+            }
+            sorted[before] = i;
         }
         std::uint32_t forwards = 0;
         std::uint32_t backwards = 0;
