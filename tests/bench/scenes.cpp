@@ -32,8 +32,10 @@ std::string path_of(const std::string& name) {
     return name;
 }
 
+// Beside this program, where it is found again the next time.
 std::optional<std::filesystem::path> unpacked(const std::filesystem::path& file, Report& report) {
-    const std::filesystem::path target = file.stem();
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
+    const std::filesystem::path target = program.parent_path() / file.stem();
     if (std::filesystem::exists(target)) return target;
     // By another name until it is whole.
     const std::string part = target.string() + ".part";

@@ -123,6 +123,16 @@ void place_objects(AccelState& state, const BuildOptions& options) {
     }
 }
 
+bool mostly_triangles(const SceneTrees& trees) {
+    const auto primitives = [](const TreeList& list) {
+        std::size_t sum = 0;
+        for (const auto& tree : list)
+            sum += tree->count;
+        return sum;
+    };
+    return primitives(trees.meshes) > primitives(trees.sphere_sets) + primitives(trees.cone_sets);
+}
+
 }  // namespace
 
 struct Accel::State : AccelState {};
@@ -133,6 +143,7 @@ Accel::Accel(std::shared_ptr<const Scene> scene, const BuildOptions& options, co
     state->scene = std::move(scene);
     state->trees =
         build_trees(*state->scene, options, reuse != nullptr ? &reuse->state_->trees : nullptr);
+    state->mostly_triangles = mostly_triangles(state->trees);
     place_objects(*state, options);
     state_ = std::move(state);
 }

@@ -37,6 +37,7 @@ struct AccelState {
     std::vector<std::uint32_t> unbounded;  // infinite planes
     Bounds bounds;                         // of the finite objects
     float reach = 0.0f;                    // the largest coordinate of these
+    bool mostly_triangles = false;         // more of them than spheres and cones of sets
 };
 
 }  // namespace raypick

@@ -273,8 +273,11 @@ private:
     Group& search_;
 };
 
-// Fewer go one by one.
-inline constexpr int kFewestInGroup = 12;
+// Fewer rays than that go one by one: in meshes they then hide each other's waiting (see Course),
+// elsewhere a group is better as soon as it isn't given up at once.
+inline int fewest_in_group(const AccelState& state) {
+    return state.mostly_triangles ? 12 : kFewRays + 1;
+}
 
 // Rays as they come, and which of them can go in groups.
 struct Chunk {
@@ -303,8 +306,9 @@ struct Chunk {
                  [&](std::size_t i) HWY_ATTR { alone |= RayMask{usable(rays[i]) ? 1u : 0u} << i; });
         world.invert();
         octants = world.octants(groupable);
+        const int fewest = fewest_in_group(state);
         for (RayMask& group : octants) {
-            if (std::popcount(group) >= kFewestInGroup) continue;
+            if (std::popcount(group) >= fewest) continue;
             alone |= group;
             group = 0;
         }
