@@ -139,7 +139,7 @@ TEST(Srgb, BytesByTables) {
     EXPECT_EQ(last, 255u);
 }
 
-// Several bands, the last one smaller, each beginning with a row that looks at the one before.
+// Smooth and noisy, of more pixels than one thread takes at a time.
 TEST_F(ImageFiles, LargePngIsReadBack) {
     constexpr ImageSize kLarge{700, 501};
     Image image;
@@ -172,7 +172,7 @@ TEST_F(ImageFiles, LargePngIsReadBack) {
     stbi_image_free(pixels);
 }
 
-// One row may be more than a band.
+// One row may be more than that.
 TEST_F(ImageFiles, WidePngIsReadBack) {
     Image image = make_image({3, 100'000});
     image.colour[299'999] = glm::vec3(1.0f);
