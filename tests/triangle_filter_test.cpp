@@ -5,6 +5,7 @@
 #include <hwy/foreach_target.h>
 
 #include "tests/brute_force.h"
+#include "tests/one_leaf.h"
 #include "tests/tracer_scenes.h"
 #include "tracer/accel/simd/group_boxes-inl.h"
 #include "tracer/accel/simd/group_triangles-inl.h"
@@ -81,14 +82,7 @@ struct Patch {
     TrianglePatches patches;
 
     explicit Patch(MeshData data) : mesh(make_mesh("mesh", std::move(data))) {
-        Bvh binary;
-        binary.nodes.resize(1);
-        binary.nodes[0].count = static_cast<std::uint32_t>(mesh.triangles.size());
-        for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
-            binary.indices.push_back(i);
-        for (const glm::vec3& position : mesh.positions)
-            binary.nodes[0].bounds.extend(position);
-        WideBvh bvh = widen(std::move(binary));
+        WideBvh bvh = one_leaf(mesh);
         patches = take_triangles(bvh, mesh, 1, {});
     }
     [[nodiscard]] const TrianglePatch& only() const { return patches.at(0); }

@@ -1,5 +1,6 @@
 // The triangles of a mesh's leaves: each exactly once, its corners bit for bit the mesh's.
 #include "tracer/accel/triangle_patches.h"
+#include "tests/one_leaf.h"
 #include "tests/random.h"
 #include "tests/tracer_scenes.h"
 #include "tracer/error.h"
@@ -27,18 +28,6 @@ WideBvh tree_over(const Mesh& mesh) {
     };
     return widen(build_bvh(mesh.triangles.size(), boxes,
                            {.costs = kWideSurfaceLeaves, .threads = 1, .stop = {}}));
-}
-
-// All triangles in one leaf, in their order.
-WideBvh one_leaf(const Mesh& mesh) {
-    Bvh binary;
-    binary.nodes.resize(1);
-    binary.nodes[0].count = static_cast<std::uint32_t>(mesh.triangles.size());
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
-        binary.indices.push_back(i);
-    for (const glm::vec3& position : mesh.positions)
-        binary.nodes[0].bounds.extend(position);
-    return widen(std::move(binary));
 }
 
 std::vector<WideRef> leaves_of(const WideBvh& bvh) {

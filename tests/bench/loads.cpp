@@ -112,12 +112,7 @@ void measure(const std::string& name, const std::vector<Contender>& contenders, 
     const std::vector<Timing> timings = alternate(contenders, report.options().rounds);
     Row row;
     row.name = name;
-    for (const Timing& timing : timings) {
-        std::vector<double> times;
-        for (const double seconds : timing.seconds)
-            times.push_back(1000.0 * seconds);
-        row.figures.push_back({timing.name, summary(times), "ms"});
-    }
+    row.figures = in_milliseconds(timings);
     if (timings.size() == 2) {
         row.result_name = "f3d / ours";
         row.result = ratio(timings[1], timings[0]);

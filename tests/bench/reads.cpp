@@ -140,12 +140,7 @@ void measure(const std::string& name, const std::vector<Contender>& contenders, 
     const std::vector<Timing> timings = alternate(contenders, report.options().rounds);
     Row row;
     row.name = name;
-    for (const Timing& timing : timings) {
-        std::vector<double> times;
-        for (const double seconds : timing.seconds)
-            times.push_back(1000.0 * seconds);
-        row.figures.push_back({timing.name, summary(times), "ms"});
-    }
+    row.figures = in_milliseconds(timings);
     if (const auto peer = fastest({timings.begin() + 1, timings.end()})) {
         row.result_name = peer->name + " / ours";
         row.result = ratio(*peer, timings.front());

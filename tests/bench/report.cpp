@@ -58,6 +58,17 @@ bool in_ci() {
 
 }  // namespace
 
+std::vector<Figure> in_milliseconds(const std::vector<Timing>& timings) {
+    std::vector<Figure> figures;
+    for (const Timing& timing : timings) {
+        std::vector<double> times;
+        for (const double seconds : timing.seconds)
+            times.push_back(1000.0 * seconds);
+        figures.push_back({timing.name, summary(times), "ms"});
+    }
+    return figures;
+}
+
 std::string verdict(const Row& row) {
     if (!row.target || !row.result) return "";
     const double sign = row.target->low_is_good ? -1.0 : 1.0;

@@ -24,6 +24,8 @@ struct Figure {
     std::string unit;
 };
 
+std::vector<Figure> in_milliseconds(const std::vector<Timing>& timings);
+
 // One line of the table on one scene.
 struct Row {
     std::string name;  // group/scene/what

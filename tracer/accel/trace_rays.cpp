@@ -3,8 +3,9 @@
 #include <hwy/foreach_target.h>
 
 #include "tracer/accel/searches.h"
-#include "tracer/accel/simd/courses-inl.h"
 #include "tracer/accel/simd/group_trace-inl.h"
+#include "tracer/accel/simd/group_winners-inl.h"
+#include "tracer/accel/simd/interleaved-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
 #include "tracer/accel/trace_rays.h"
 #include "tracer/error.h"
@@ -74,18 +75,18 @@ void trace_unbounded(const AccelState& state, const Ray& any_ray, const RayQuery
 void closest_one_by_one(const AccelState& state, RayMask mask, std::span<const Ray> rays,
                         std::span<Hit> hits, const RayQuery& query) {
     RayMask ambiguous = 0;
-    run_courses<ClosestSearch, kInterleaved>(
-        [&](Course<ClosestSearch>& course, std::size_t& ray) HWY_ATTR {
+    run_interleaved<ClosestSearch, kInterleaved>(
+        [&](Traversal<ClosestSearch>& traversal, std::size_t& ray) HWY_ATTR {
             if (mask == 0) return false;
             ray = take_ray(mask);
             ClosestSearch closest(rays[ray].t_max);
             trace_unbounded(state, rays[ray], query, closest);
-            course.start(state, rays[ray], query, closest);
+            traversal.start(state, rays[ray], query, closest);
             return true;
         },
-        [&](const Course<ClosestSearch>& course, std::size_t ray) HWY_ATTR {
-            hits[ray] = course.search().winner();
-            if (course.search().ambiguous()) ambiguous |= RayMask{1} << ray;
+        [&](const Traversal<ClosestSearch>& traversal, std::size_t ray) HWY_ATTR {
+            hits[ray] = traversal.search().winner();
+            if (traversal.search().ambiguous()) ambiguous |= RayMask{1} << ray;
         });
     each_ray(ambiguous, [&](std::size_t ray) HWY_ATTR {
         hits[ray] = HWY_NAMESPACE::closest_hit(state, rays[ray], query).value_or(Hit{});
@@ -95,8 +96,8 @@ void closest_one_by_one(const AccelState& state, RayMask mask, std::span<const R
 RayMask any_one_by_one(const AccelState& state, RayMask mask, std::span<const Ray> rays,
                        const RayQuery& query) {
     RayMask found = 0;
-    run_courses<AnySearch, kInterleaved>(
-        [&](Course<AnySearch>& course, std::size_t& ray) HWY_ATTR {
+    run_interleaved<AnySearch, kInterleaved>(
+        [&](Traversal<AnySearch>& traversal, std::size_t& ray) HWY_ATTR {
             while (mask != 0) {
                 ray = take_ray(mask);
                 AnySearch any(rays[ray].t_max);
@@ -105,13 +106,13 @@ RayMask any_one_by_one(const AccelState& state, RayMask mask, std::span<const Ra
                     found |= RayMask{1} << ray;
                     continue;
                 }
-                course.start(state, rays[ray], query, any);
+                traversal.start(state, rays[ray], query, any);
                 return true;
             }
             return false;
         },
-        [&](const Course<AnySearch>& course, std::size_t ray) HWY_ATTR {
-            if (course.search().found()) found |= RayMask{1} << ray;
+        [&](const Traversal<AnySearch>& traversal, std::size_t ray) HWY_ATTR {
+            if (traversal.search().found()) found |= RayMask{1} << ray;
         });
     return found;
 }
@@ -127,12 +128,7 @@ void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::s
         search.limits = chunk.limits;
         search.candidate_from.fill(std::numeric_limits<float>::infinity());
         GroupTrace(state, rays, query, search).run(chunk.world, mask);
-        RayMask open = search.rivalled & ~search.lost;
-        const RayMask sole =
-            decide_sole(state, search, search.found & ~search.rivalled, rays, hits);
-        open |= decide_sole_elements(state, search, sole, rays, query, hits);
-        each_ray(open, [&](std::size_t ray)
-                           HWY_ATTR { choose(state, search, ray, rays[ray], query, hits[ray]); });
+        decide_winners(state, search, rays, query, hits);
         alone |= search.lost;
     }
     closest_one_by_one(state, alone, rays, hits, query);

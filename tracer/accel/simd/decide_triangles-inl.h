@@ -13,6 +13,7 @@
 #include <glm/vec3.hpp>
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -70,6 +71,12 @@ struct TriangleAnswers {
     using Numbers = std::array<double, kDoublesAtOnce>;
     HWY_ALIGN Numbers t, u, v, determinant;
     std::uint32_t hit = 0;  // as a mask
+
+    // At a t between the two.
+    [[nodiscard]] bool hits(std::size_t lane, float t_min, float t_max) const {
+        const auto at = static_cast<float>(t[lane]);
+        return ((hit >> lane) & 1) != 0 && at > t_min && at < t_max;
+    }
 };
 
 HWY_INLINE void swap_larger(DoubleVector& a, DoubleVector& b) {
@@ -121,6 +128,27 @@ inline void decide(const TrianglePairs& pairs, TriangleAnswers& answers) {
     std::uint8_t stored[8] = {};
     hn::StoreMaskBits(d, hit, stored);
     answers.hit = stored[0];
+}
+
+// Decides the mask's rays, each with a triangle that set(ray, pairs, lane) puts into a lane; false:
+// it has none. settle(ray, answers, lane) is told of those that have.
+template <typename Set, typename Settle>
+void decide_rays(std::uint64_t mask, const Set& set, const Settle& settle) {
+    TrianglePairs pairs;
+    TriangleAnswers answers;
+    std::array<std::size_t, kDoublesAtOnce> rays{};
+    while (mask != 0) {
+        std::size_t count = 0;
+        for (; mask != 0 && count < kDoublesAtOnce; mask &= mask - 1) {
+            rays[count] = static_cast<std::size_t>(std::countr_zero(mask));
+            if (set(rays[count], pairs, count)) ++count;
+        }
+        if (count == 0) return;
+        pairs.fill_from(count);
+        decide(pairs, answers);
+        for (std::size_t lane = 0; lane < count; ++lane)
+            settle(rays[lane], answers, lane);
+    }
 }
 
 }  // namespace raypick::HWY_NAMESPACE

@@ -6,15 +6,14 @@
 #define RAYPICK_GROUP_TRACE_INL_H
 #endif
 
-#include "tracer/accel/simd/courses-inl.h"
 #include "tracer/accel/simd/decide_triangles-inl.h"
 #include "tracer/accel/simd/group_boxes-inl.h"
 #include "tracer/accel/simd/group_cones-inl.h"
 #include "tracer/accel/simd/group_search-inl.h"
 #include "tracer/accel/simd/group_spheres-inl.h"
 #include "tracer/accel/simd/group_triangles-inl.h"
+#include "tracer/accel/simd/interleaved-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
-#include "tracer/accel/simd/sole_elements-inl.h"
 
 #include <cstddef>
 #include <span>
@@ -83,16 +82,16 @@ private:
     // The same for a few rays in a mesh or a part of it.
     void few_in_mesh(const TopEntry& entry, RayMask mask) {
         using One = decltype(one_of(search_, 0, 0));
-        run_courses<One, kFewRays>(
-            [&](Course<One>& course, std::size_t&) HWY_ATTR {
+        run_interleaved<One, kFewRays>(
+            [&](Traversal<One>& traversal, std::size_t&) HWY_ATTR {
                 if (mask == 0) return false;
                 const auto ray = static_cast<std::size_t>(std::countr_zero(mask));
                 mask &= mask - 1;
-                course.start_in(state_, entry, rays_[ray], query_,
-                                one_of(search_, ray, entry.object));
+                traversal.start_in(state_, entry, rays_[ray], query_,
+                                   one_of(search_, ray, entry.object));
                 return true;
             },
-            [](const Course<One>&, std::size_t) {});
+            [](const Traversal<One>&, std::size_t) {});
     }
 
     void enter(const TopEntry& entry, const GroupSpace& world, RayMask mask) {
@@ -240,31 +239,24 @@ private:
         const glm::vec3& b = mesh.positions[corner.y];
         const glm::vec3& c = mesh.positions[corner.z];
         if (!has_area(a, b, c)) return;
-        TrianglePairs pairs;
-        TriangleAnswers answers;
-        std::array<std::size_t, kDoublesAtOnce> lanes{};
-        while (mask != 0) {
-            std::size_t count = 0;
-            for (; mask != 0 && count < kDoublesAtOnce; mask &= mask - 1) {
-                lanes[count] = static_cast<std::size_t>(std::countr_zero(mask));
-                const ObjectRay local = object_ray(state_.instances[index], rays_[lanes[count]]);
-                pairs.set(count++, local.origin, local.direction, a, b, c);
-            }
-            pairs.fill_from(count);
-            decide(pairs, answers);
-            for (std::size_t i = 0; i < count; ++i) {
-                const Ray& ray = rays_[lanes[i]];
-                const auto t = static_cast<float>(answers.t[i]);
-                const bool front = answers.determinant[i] > 0.0;
-                if (((answers.hit >> i) & 1) == 0 || !(t > ray.t_min && t < ray.t_max)) continue;
-                if (!shows(object.sides, front) || !shows(query_.sides, front)) continue;
+        decide_rays(
+            mask,
+            [&](std::size_t ray, TrianglePairs& pairs, std::size_t lane) HWY_ATTR {
+                const ObjectRay local = object_ray(state_.instances[index], rays_[ray]);
+                pairs.set(lane, local.origin, local.direction, a, b, c);
+                return true;
+            },
+            [&](std::size_t ray, const TriangleAnswers& answers, std::size_t lane) HWY_ATTR {
+                if (!answers.hits(lane, rays_[ray].t_min, rays_[ray].t_max)) return;
+                const bool front = answers.determinant[lane] > 0.0;
+                if (!shows(object.sides, front) || !shows(query_.sides, front)) return;
+                const auto t = static_cast<float>(answers.t[lane]);
                 if constexpr (std::is_same_v<Group, AnyOfGroup>) {
-                    search_.block(RayMask{1} << lanes[i]);
-                } else if (t <= search_.limits.t_far[lanes[i]]) {
-                    search_.offer(lanes[i], index, primitive, t);
+                    search_.block(RayMask{1} << ray);
+                } else if (t <= search_.limits.t_far[ray]) {
+                    search_.offer(ray, index, primitive, t);
                 }
-            }
-        }
+            });
     }
 
     const AccelState& state_;
@@ -273,8 +265,8 @@ private:
     Group& search_;
 };
 
-// Fewer rays than that go one by one: in meshes they then hide each other's waiting (see Course),
-// elsewhere a group is better as soon as it isn't given up at once.
+// Fewer rays than that go one by one: in meshes they then hide each other's waiting (see
+// Traversal), elsewhere a group is better as soon as it isn't given up at once.
 inline int fewest_in_group(const AccelState& state) {
     return state.mostly_triangles ? 12 : kFewRays + 1;
 }
@@ -367,77 +359,6 @@ private:
         return result;
     }
 };
-
-// The winner among a ray's candidate and its rivals by the tie rule of hit.h.
-inline void choose(const AccelState& state, const ClosestOfGroup& search, std::size_t ray,
-                   const Ray& from, const RayQuery& query, Hit& hit) {
-    const auto offer_all = [&](auto& one) HWY_ATTR {
-        if (((search.found >> ray) & 1) != 0) {
-            trace_primitive(state, search.candidate_object[ray], search.candidate_primitive[ray],
-                            from, query, one);
-        }
-        for (std::size_t i = 0; i < search.rival_count; ++i) {
-            const ClosestOfGroup::Rival& rival = search.rivals[i];
-            if (rival.ray != ray) continue;
-            trace_primitive(state, rival.object, rival.primitive, from, query, one);
-        }
-    };
-    ClosestSearch closest(from.t_max);
-    offer_all(closest);
-    if (!closest.winner().valid() || !closest.ambiguous()) {
-        hit = closest.winner();
-        return;
-    }
-    LowestInWindow lowest(closest.limit());
-    offer_all(lowest);
-    hit = lowest.winner();
-}
-
-// The candidates of rays without rivals, several at once; those that this can't decide stay in the
-// mask that it returns.
-inline RayMask decide_sole(const AccelState& state, const ClosestOfGroup& search, RayMask mask,
-                           std::span<const Ray> rays, std::span<Hit> hits) {
-    const Scene& scene = *state.scene;
-    RayMask left = 0;
-    TrianglePairs pairs;
-    TriangleAnswers answers;
-    std::array<std::size_t, kDoublesAtOnce> lanes{};
-    while (mask != 0) {
-        std::size_t count = 0;
-        for (; mask != 0 && count < kDoublesAtOnce; mask &= mask - 1) {
-            const auto ray = static_cast<std::size_t>(std::countr_zero(mask));
-            const std::uint32_t object = search.candidate_object[ray];
-            const auto* mesh = std::get_if<MeshInstance>(&scene.objects[object].shape);
-            if (mesh == nullptr) {
-                left |= RayMask{1} << ray;
-                continue;
-            }
-            const Mesh& of = scene.meshes[mesh->mesh];
-            const glm::uvec3 corner = of.triangles[search.candidate_primitive[ray]];
-            const ObjectRay local = object_ray(state.instances[object], rays[ray]);
-            pairs.set(count, local.origin, local.direction, of.positions[corner.x],
-                      of.positions[corner.y], of.positions[corner.z]);
-            lanes[count++] = ray;
-        }
-        if (count == 0) break;
-        pairs.fill_from(count);
-        decide(pairs, answers);
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::size_t ray = lanes[i];
-            const auto t = static_cast<float>(answers.t[i]);
-            if (((answers.hit >> i) & 1) == 0 || !(t > rays[ray].t_min && t < rays[ray].t_max)) {
-                left |= RayMask{1} << ray;
-                continue;
-            }
-            hits[ray] = {scene.objects[search.candidate_object[ray]].id,
-                         search.candidate_primitive[ray],
-                         t,
-                         {static_cast<float>(answers.u[i]), static_cast<float>(answers.v[i])},
-                         answers.determinant[i] > 0.0};
-        }
-    }
-    return left;
-}
 
 }  // namespace raypick::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

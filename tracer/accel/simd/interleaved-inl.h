@@ -1,10 +1,10 @@
 // Rays that have nothing in common, a step of each in turn: while one waits for memory the others
 // go on. Included once for each instruction set.
-#if defined(RAYPICK_COURSES_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYPICK_COURSES_INL_H
-#undef RAYPICK_COURSES_INL_H
+#if defined(RAYPICK_INTERLEAVED_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYPICK_INTERLEAVED_INL_H
+#undef RAYPICK_INTERLEAVED_INL_H
 #else
-#define RAYPICK_COURSES_INL_H
+#define RAYPICK_INTERLEAVED_INL_H
 #endif
 
 #include "tracer/accel/simd/single_ray-inl.h"
@@ -21,7 +21,7 @@ namespace raypick::HWY_NAMESPACE {
 // A ray on its way through the objects of a scene: what walk() does within the top tree and within
 // a mesh's, to be stopped after every step.
 template <typename Search>
-class Course {
+class Traversal {
 public:
     // Through all finite objects.
     void start(const AccelState& state, const Ray& ray, const RayQuery& query,
@@ -148,25 +148,25 @@ private:
     WaitingBoxes stack_;
 };
 
-// Puts rays on their way with begin(course), which returns false if there are no more, and gives
-// each to end(course, slot) when it is done.
+// Puts rays on their way with begin(traversal), which returns false if there are no more, and gives
+// each to end(traversal, slot) when it is done.
 template <typename Search, std::size_t kAtOnce, typename Begin, typename End>
-void run_courses(const Begin& begin, const End& end) {
-    Course<Search> courses[kAtOnce];  // NOLINT: large, and set by begin()
+void run_interleaved(const Begin& begin, const End& end) {
+    Traversal<Search> traversals[kAtOnce];  // NOLINT: large, and set by begin()
     std::array<std::size_t, kAtOnce> ray{};
     std::array<std::size_t, kAtOnce> slots{};
     std::size_t active = 0;
-    for (; active < kAtOnce && begin(courses[active], ray[active]); ++active)
+    for (; active < kAtOnce && begin(traversals[active], ray[active]); ++active)
         slots[active] = active;
     while (active > 0) {
         for (std::size_t i = 0; i < active;) {
             const std::size_t slot = slots[i];
-            if (courses[slot].step()) {
+            if (traversals[slot].step()) {
                 ++i;
                 continue;
             }
-            end(courses[slot], ray[slot]);
-            if (begin(courses[slot], ray[slot])) {
+            end(traversals[slot], ray[slot]);
+            if (begin(traversals[slot], ray[slot])) {
                 ++i;
             } else {
                 slots[i] = slots[--active];
