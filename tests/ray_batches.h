@@ -76,6 +76,37 @@ inline void expect_as_one_by_one(const Accel& accel, const std::vector<Ray>& ray
     }
 }
 
+// The same of rays that end at a point, whether it is said of them or not.
+inline void expect_as_one_by_one_towards(const Accel& accel, const glm::vec3& end,
+                                         const std::vector<Ray>& rays, const RayQuery& query = {}) {
+    std::vector<std::uint8_t> blocked(rays.size(), 7);
+    std::vector<std::uint8_t> wanted(rays.size(), 7);
+    accel.occluded_towards(end, rays, blocked, query);
+    accel.occluded(rays, wanted, query);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        ASSERT_EQ(blocked[i], wanted[i]) << i << ": " << to_text(rays[i]);
+        ASSERT_EQ(accel.occluded(rays[i], query), wanted[i] != 0) << i << ": " << to_text(rays[i]);
+    }
+}
+
+// Shadow rays of lights beside the scene, within it, far away, and where they don't go.
+inline void expect_shadows_as_one_by_one(const Accel& accel, const std::vector<Ray>& eye_rays,
+                                         const RayQuery& query = {}) {
+    const Bounds& bounds = accel.bounds();
+    const glm::vec3 extent = bounds.extent();
+    for (const glm::vec3& light : {bounds.max + 0.3f * extent, bounds.centre() + 0.1f * extent,
+                                   bounds.min - 15.0f * extent, bounds.max + 1e5f * extent}) {
+        std::vector<Ray> rays = shadow_rays(accel, eye_rays, light);
+        expect_as_one_by_one_towards(accel, light, rays, query);
+        expect_as_one_by_one_towards(accel, light + 0.01f * extent, rays, query);
+        for (std::size_t i = 0; i < rays.size(); i += 7)
+            rays[i].t_min = 0.5f * rays[i].t_max;
+        for (std::size_t i = 3; i < rays.size(); i += 7)
+            rays[i].t_max *= 0.25f;
+        expect_as_one_by_one_towards(accel, light, rays, query);
+    }
+}
+
 // Batches, rays one by one and brute force agree on rays of every kind.
 inline void expect_all_ways(const Scene& scene, std::uint64_t seed) {
     const Accel accel = accel_of(scene);
@@ -88,6 +119,7 @@ inline void expect_all_ways(const Scene& scene, std::uint64_t seed) {
     rays.insert(rays.end(), parallel.begin(), parallel.end());
     expect_as_one_by_one(accel, rays);
     expect_as_one_by_one(accel, shadow_rays(accel, rays, accel.bounds().max * 1.3f));
+    expect_shadows_as_one_by_one(accel, rays);
     for (std::size_t i = 0; i < rays.size(); i += 5) {
         ASSERT_EQ(complaint(accel.intersect(rays[i]), brute.all(rays[i])), "") << to_text(rays[i]);
     }

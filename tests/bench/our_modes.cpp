@@ -26,8 +26,7 @@ Tally tally(std::span<const Hit> hits) {
 // The one call for shadow rays of a light.
 void trace_shadows(const Accel& accel, const RayList& list, std::span<const Ray> rays,
                    std::span<std::uint8_t> blocked) {
-    static_cast<void>(list.light);
-    accel.occluded(rays, blocked);
+    accel.occluded_towards(glm::vec3(list.light), rays, blocked);
 }
 
 Mode closest_batch(const Accel& accel, const RayList& list) {

@@ -170,7 +170,12 @@ void Accel::intersect(std::span<const Ray> rays, std::span<Hit> hits, const RayQ
 
 void Accel::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                      const RayQuery& query) const {
-    any_hits(*state_, rays, blocked, query);
+    any_hits(*state_, rays, blocked, query, nullptr);
+}
+
+void Accel::occluded_towards(const glm::vec3& end, std::span<const Ray> rays,
+                             std::span<std::uint8_t> blocked, const RayQuery& query) const {
+    any_hits(*state_, rays, blocked, query, &end);
 }
 
 const Scene& Accel::scene() const {

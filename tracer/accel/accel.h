@@ -64,6 +64,10 @@ public:
                    const RayQuery& query = {}) const;
     void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                   const RayQuery& query = {}) const;
+    // The same, faster for rays that end at one point or shortly before it, as shadow rays of a
+    // point light do. Others get their answers as well.
+    void occluded_towards(const glm::vec3& end, std::span<const Ray> rays,
+                          std::span<std::uint8_t> blocked, const RayQuery& query = {}) const;
 
     [[nodiscard]] const Scene& scene() const;
     [[nodiscard]] std::shared_ptr<const Scene> shared_scene() const;

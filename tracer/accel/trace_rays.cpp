@@ -120,29 +120,41 @@ RayMask any_one_by_one(const AccelState& state, RayMask mask, std::span<const Ra
 void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::span<Hit> hits,
                       const RayQuery& query) {
     const Chunk chunk(state, rays, query);
-    std::fill(hits.begin(), hits.end(), Hit{});
     RayMask alone = chunk.alone;
+    RayMask missed = ~RayMask{0};
     for (const RayMask mask : chunk.octants) {
         if (mask == 0) continue;
         ClosestOfGroup search;
         search.limits = chunk.limits;
         search.candidate_from.fill(std::numeric_limits<float>::infinity());
         GroupTrace(state, rays, query, search).run(chunk.world, mask);
-        decide_winners(state, search, rays, query, hits);
+        decide_winners(state, search, chunk.world, rays, query, hits);
         alone |= search.lost;
+        missed &= ~(search.found | search.rivalled);
+    }
+    for (std::size_t ray = 0; ray < rays.size(); ++ray) {
+        if (((missed >> ray) & 1) != 0) hits[ray] = Hit{};
     }
     closest_one_by_one(state, alone, rays, hits, query);
 }
 
+// `end`: where the rays end, if it is not null.
 void any_of_chunk(const AccelState& state, std::span<const Ray> rays,
-                  std::span<std::uint8_t> blocked, const RayQuery& query) {
+                  std::span<std::uint8_t> blocked, const RayQuery& query, const glm::vec3* end) {
     const Chunk chunk(state, rays, query);
     RayMask found = 0;
+    GroupBack back;
     for (const RayMask mask : chunk.octants) {
         if (mask == 0) continue;
         AnyOfGroup search;
         search.limits = chunk.limits;
-        GroupTrace(state, rays, query, search).run(chunk.world, mask);
+        GroupTrace trace(state, rays, query, search);
+        if (end != nullptr &&
+            back.set(chunk.world, chunk.limits, mask, *end, state.reach, search.back)) {
+            trace.run_back(back, mask);
+        } else {
+            trace.run(chunk.world, mask);
+        }
         found |= search.blocked;
     }
     found |= any_one_by_one(state, chunk.alone, rays, query);
@@ -161,10 +173,12 @@ void closest_hits(const AccelState& state, std::span<const Ray> rays, std::span<
 }
 
 void any_hits(const AccelState& state, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
-              const RayQuery& query) {
+              const RayQuery& query, const glm::vec3* end) {
+    // Rays backwards from there are of one origin, which is what triangles gain from.
+    if (!state.mostly_triangles) end = nullptr;
     for (std::size_t i = 0; i < rays.size(); i += kGroup) {
         const std::size_t count = std::min(kGroup, rays.size() - i);
-        any_of_chunk(state, rays.subspan(i, count), blocked.subspan(i, count), query);
+        any_of_chunk(state, rays.subspan(i, count), blocked.subspan(i, count), query, end);
     }
 }
 
@@ -198,8 +212,8 @@ void closest_hits(const AccelState& state, std::span<const Ray> rays, std::span<
 }
 
 void any_hits(const AccelState& state, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
-              const RayQuery& query) {
-    HWY_DYNAMIC_DISPATCH(any_hits)(state, rays, blocked, query);
+              const RayQuery& query, const glm::vec3* end) {
+    HWY_DYNAMIC_DISPATCH(any_hits)(state, rays, blocked, query, end);
 }
 
 namespace {

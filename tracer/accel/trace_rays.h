@@ -16,14 +16,14 @@
 
 namespace raypick {
 
-// As the queries of Accel, see there.
+// As the queries of Accel, see there. `end`: a point where the rays end, or null.
 std::optional<Hit> closest_hit(const AccelState& state, const Ray& ray, const RayQuery& query);
 bool any_hit(const AccelState& state, const Ray& ray, const RayQuery& query);
 std::vector<Hit> all_hits(const AccelState& state, const Ray& ray, const RayQuery& query);
 void closest_hits(const AccelState& state, std::span<const Ray> rays, std::span<Hit> hits,
                   const RayQuery& query);
 void any_hits(const AccelState& state, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
-              const RayQuery& query);
+              const RayQuery& query, const glm::vec3* end);
 
 // The instruction sets that rays can run on here, by Highway's names, best first.
 std::vector<std::string> instruction_sets();

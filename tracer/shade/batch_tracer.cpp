@@ -300,7 +300,7 @@ void BatchTracer::gather_light(const Step& step, std::size_t light, int sample) 
 }
 
 // What arrives of the light along the shadow rays, which all end at it.
-void BatchTracer::find_shares(const Step& step, const PreparedLight& /*light*/) {
+void BatchTracer::find_shares(const Step& step, const PreparedLight& light) {
     const ShadeScene& scene = step.job.scene;
     const std::span<const Ray> rays = std::span(shadow_rays_).first(arriving_count_);
     count_shadows(step.job.counts, rays.size(), step.depth);
@@ -315,7 +315,11 @@ void BatchTracer::find_shares(const Step& step, const PreparedLight& /*light*/) 
         }
         return;
     }
-    scene.accel->occluded(rays, blocked_);
+    if (light.is_a_point()) {
+        scene.accel->occluded_towards(glm::vec3(light.position), rays, blocked_);
+    } else {
+        scene.accel->occluded(rays, blocked_);
+    }
 }
 
 }  // namespace raypick

@@ -37,6 +37,10 @@ struct PreparedLight {
 
     // samples * samples of an area light, 1 of the others.
     [[nodiscard]] int count() const { return side * side; }
+    // All of its light comes from `position`.
+    [[nodiscard]] bool is_a_point() const {
+        return kind == Kind::point || kind == Kind::spot || (kind == Kind::sphere && side == 1);
+    }
 };
 PreparedLight prepared(const Light& light);
 

@@ -7,6 +7,9 @@
 #define RAYPICK_DECIDE_TRIANGLES_INL_H
 #endif
 
+#include "tracer/accel/passage.h"
+#include "tracer/accel/simd/ray_group-inl.h"
+#include "tracer/geometry/ray.h"
 #include "tracer/geometry/shapes.h"
 
 #include <glm/geometric.hpp>
@@ -17,7 +20,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 #include <hwy/highway.h>
 
@@ -29,36 +31,157 @@ using Doubles = hn::CappedTag<double, 8>;
 using DoubleVector = hn::Vec<Doubles>;
 inline constexpr std::size_t kDoublesAtOnce = hn::MaxLanes(Doubles());
 
-// Rays with a triangle each, in the rays' sheared axes (see shear() in triangle_test.h).
-struct TrianglePairs {
-    using Numbers = std::array<double, kDoublesAtOnce>;
-    HWY_ALIGN std::array<Numbers, 3> direction;              // along kx, ky, kz
-    HWY_ALIGN std::array<std::array<Numbers, 3>, 3> offset;  // of each corner from the origin
+// By corner and axis; the fourth is nobody's.
+using TriangleCorners = std::array<std::array<float, 4>, 3>;
 
-    HWY_INLINE void set(std::size_t lane, const glm::dvec3& origin, const glm::dvec3& along,
-                        const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-        const double x = std::abs(along.x);
-        const double y = std::abs(along.y);
-        const double z = std::abs(along.z);
-        const int kz = x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
-        int kx = kz == 2 ? 0 : kz + 1;
-        int ky = kx == 2 ? 0 : kx + 1;
-        if (along[kz] < 0.0) std::swap(kx, ky);
-        const int axes[3] = {kx, ky, kz};
-        for (std::size_t i = 0; i < 3; ++i) {
-            const int k = axes[i];
-            direction[i][lane] = along[k];
-            offset[0][i][lane] = static_cast<double>(a[k]) - origin[k];
-            offset[1][i][lane] = static_cast<double>(b[k]) - origin[k];
-            offset[2][i][lane] = static_cast<double>(c[k]) - origin[k];
+// Rays with a triangle each, a row for each pair: that is how they come.
+struct TrianglePairs {
+    using Row = std::array<double, 8>;       // origin, direction, and two that nobody asks for
+    using CornerRow = std::array<float, 4>;  // and one that nobody asks for
+    template <typename Element>
+    using Rows = std::array<Element, kDoublesAtOnce>;
+    HWY_ALIGN Rows<Row> rays;
+    HWY_ALIGN std::array<Rows<CornerRow>, 3> corners;
+
+    // Of a triangle in world space.
+    HWY_INLINE void set_ray(std::size_t lane, const Ray& ray) {
+        static_assert(sizeof(Ray) == 8 * sizeof(float) && offsetof(Ray, direction) == 12);
+        const Doubles d;
+        const hn::Rebind<float, Doubles> of_float;
+        const auto* numbers = reinterpret_cast<const float*>(&ray);
+        for (std::size_t i = 0; i < 8; i += kDoublesAtOnce)
+            hn::Store(hn::PromoteTo(d, hn::LoadU(of_float, numbers + i)), d, &rays[lane][i]);
+    }
+
+    HWY_INLINE void set_ray(std::size_t lane, const ObjectRay& ray) {
+        rays[lane] = {ray.origin.x,    ray.origin.y,    ray.origin.z, ray.direction.x,
+                      ray.direction.y, ray.direction.z, 0.0,          0.0};
+    }
+
+    HWY_INLINE void set_corners(std::size_t lane, const glm::vec3& a, const glm::vec3& b,
+                                const glm::vec3& c) {
+        corners[0][lane] = {a.x, a.y, a.z, 0.0f};
+        corners[1][lane] = {b.x, b.y, b.z, 0.0f};
+        corners[2][lane] = {c.x, c.y, c.z, 0.0f};
+    }
+
+    // The first pair once more, from this lane on.
+    HWY_INLINE void fill_from(std::size_t lane) {
+        for (; lane < kDoublesAtOnce; ++lane) {
+            rays[lane] = rays[0];
+            for (auto& corner : corners)
+                corner[lane] = corner[0];
+        }
+    }
+};
+
+// The ray in the object's space.
+HWY_INLINE void set_ray(const Instance& instance, const Ray& ray, std::size_t lane,
+                        TrianglePairs& pairs) {
+    if (instance.identity) {
+        pairs.set_ray(lane, ray);
+    } else {
+        pairs.set_ray(lane, object_ray(instance, ray));
+    }
+}
+
+// Pairs, number by number.
+struct TriangleColumns {
+    DoubleVector origin[3];
+    DoubleVector direction[3];
+    DoubleVector corner[3][3];  // by corner and axis
+
+    // Of rays from `first` on, all with the same triangle.
+    HWY_INLINE TriangleColumns(const GroupRays& rays, std::size_t first,
+                               const TriangleCorners& corners) {
+        const Doubles d;
+        const hn::Rebind<float, Doubles> of_float;
+        const auto load = [&](const GroupFloats& numbers) HWY_ATTR {
+            return hn::PromoteTo(d, hn::LoadU(of_float, numbers.data() + first));
+        };
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            origin[axis] = load(rays.origin[axis]);
+            direction[axis] = load(rays.direction[axis]);
+            for (std::size_t k = 0; k < 3; ++k)
+                corner[k][axis] = hn::Set(d, static_cast<double>(corners[k][axis]));
         }
     }
 
-    // Numbers, whichever, from this lane on.
-    HWY_INLINE void fill_from(std::size_t lane) {
-        for (; lane < kDoublesAtOnce; ++lane)
-            set(lane, glm::dvec3(0.0), glm::dvec3(1.0), glm::vec3(0.0f), glm::vec3(0.0f),
-                glm::vec3(0.0f));
+    HWY_INLINE explicit TriangleColumns(const TrianglePairs& pairs) {
+        for (std::size_t k = 0; k < 3; ++k)
+            set_corner(pairs.corners[k], corner[k]);
+#if HWY_TARGET == HWY_SCALAR
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            origin[axis] = hn::Load(Doubles(), &pairs.rays[0][axis]);
+            direction[axis] = hn::Load(Doubles(), &pairs.rays[0][3 + axis]);
+        }
+#else
+        // Of one half of the rows in turns: number k and number k + 4.
+        const Doubles d;
+        DoubleVector a[4];
+        DoubleVector b[4];
+        hn::LoadInterleaved4(d, pairs.rays[0].data(), a[0], a[1], a[2], a[3]);
+        hn::LoadInterleaved4(d, pairs.rays[kDoublesAtOnce / 2].data(), b[0], b[1], b[2], b[3]);
+        origin[0] = hn::ConcatEven(d, b[0], a[0]);
+        origin[1] = hn::ConcatEven(d, b[1], a[1]);
+        origin[2] = hn::ConcatEven(d, b[2], a[2]);
+        direction[0] = hn::ConcatEven(d, b[3], a[3]);
+        direction[1] = hn::ConcatOdd(d, b[0], a[0]);
+        direction[2] = hn::ConcatOdd(d, b[1], a[1]);
+#endif
+    }
+
+private:
+    HWY_INLINE static void set_corner(const TrianglePairs::Rows<TrianglePairs::CornerRow>& rows,
+                                      DoubleVector (&to)[3]) {
+        const Doubles d;
+        const hn::Rebind<float, Doubles> of_float;
+        hn::Vec<hn::Rebind<float, Doubles>> column[4];
+        hn::LoadInterleaved4(of_float, rows[0].data(), column[0], column[1], column[2], column[3]);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            to[axis] = hn::PromoteTo(d, column[axis]);
+    }
+};
+
+// Which axis is which in a ray's sheared space (see shear() in triangle_test.h): kz is where the
+// direction is longest, and kx and ky are swapped where it is below 0 there.
+struct ShearedAxes {
+    hn::Mask<Doubles> x_is_0, x_is_1;  // else 2
+    hn::Mask<Doubles> y_is_0, y_is_1;
+    hn::Mask<Doubles> z_is_0, z_is_1;
+
+    HWY_INLINE explicit ShearedAxes(const DoubleVector (&direction)[3]) {
+        const auto x = hn::Abs(direction[0]);
+        const auto y = hn::Abs(direction[1]);
+        const auto z = hn::Abs(direction[2]);
+        const auto beyond_y = hn::Gt(x, y);
+        z_is_0 = hn::And(beyond_y, hn::Gt(x, z));
+        z_is_1 = hn::AndNot(beyond_y, hn::Gt(y, z));
+        const auto z_is_2 = hn::Not(hn::Or(z_is_0, z_is_1));
+        const auto swapped = hn::Lt(pick(z_is_0, z_is_1, direction), hn::Zero(Doubles()));
+        const auto either = [&](const auto& plain, const auto& if_swapped) HWY_ATTR {
+            return hn::Or(hn::AndNot(swapped, plain), hn::And(swapped, if_swapped));
+        };
+        x_is_0 = either(z_is_2, z_is_1);
+        x_is_1 = either(z_is_0, z_is_2);
+        y_is_0 = either(z_is_1, z_is_2);
+        y_is_1 = either(z_is_2, z_is_0);
+    }
+
+    [[nodiscard]] HWY_INLINE DoubleVector x_of(const DoubleVector (&v)[3]) const {
+        return pick(x_is_0, x_is_1, v);
+    }
+    [[nodiscard]] HWY_INLINE DoubleVector y_of(const DoubleVector (&v)[3]) const {
+        return pick(y_is_0, y_is_1, v);
+    }
+    [[nodiscard]] HWY_INLINE DoubleVector z_of(const DoubleVector (&v)[3]) const {
+        return pick(z_is_0, z_is_1, v);
+    }
+
+private:
+    HWY_INLINE static DoubleVector pick(const hn::Mask<Doubles>& is_0,
+                                        const hn::Mask<Doubles>& is_1, const DoubleVector (&v)[3]) {
+        return hn::IfThenElse(is_0, v[0], hn::IfThenElse(is_1, v[1], v[2]));
     }
 };
 
@@ -68,15 +191,16 @@ inline bool has_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3&
 }
 
 struct TriangleAnswers {
-    using Numbers = std::array<double, kDoublesAtOnce>;
-    HWY_ALIGN Numbers t, u, v, determinant;
-    std::uint32_t hit = 0;  // as a mask
+    using Numbers = std::array<float, kDoublesAtOnce>;
+    HWY_ALIGN Numbers t, u, v;
+    std::uint32_t hit = 0;    // as a mask
+    std::uint32_t front = 0;  // the same
 
     // At a t between the two.
     [[nodiscard]] bool hits(std::size_t lane, float t_min, float t_max) const {
-        const auto at = static_cast<float>(t[lane]);
-        return ((hit >> lane) & 1) != 0 && at > t_min && at < t_max;
+        return ((hit >> lane) & 1) != 0 && t[lane] > t_min && t[lane] < t_max;
     }
+    [[nodiscard]] bool hits_front(std::size_t lane) const { return ((front >> lane) & 1) != 0; }
 };
 
 HWY_INLINE void swap_larger(DoubleVector& a, DoubleVector& b) {
@@ -94,23 +218,26 @@ HWY_INLINE DoubleVector ordered_sum(DoubleVector a, DoubleVector b, DoubleVector
 }
 
 // For triangles with an area only: those of none are not recognised here.
-inline void decide(const TrianglePairs& pairs, TriangleAnswers& answers) {
+HWY_INLINE void decide(TriangleColumns columns, TriangleAnswers& answers) {
     const Doubles d;
-    const auto load = [&](const TrianglePairs::Numbers& numbers)
-                          HWY_ATTR { return hn::Load(d, numbers.data()); };
-    const auto along = load(pairs.direction[2]);
-    const auto sx = hn::Div(load(pairs.direction[0]), along);
-    const auto sy = hn::Div(load(pairs.direction[1]), along);
+    const ShearedAxes axes(columns.direction);
+    for (auto& corner : columns.corner) {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            corner[axis] = hn::Sub(corner[axis], columns.origin[axis]);
+    }
+    const auto along = axes.z_of(columns.direction);
+    const auto sx = hn::Div(axes.x_of(columns.direction), along);
+    const auto sy = hn::Div(axes.y_of(columns.direction), along);
     const auto sz = hn::Div(hn::Set(d, 1.0), along);
-    const auto az = load(pairs.offset[0][2]);
-    const auto bz = load(pairs.offset[1][2]);
-    const auto cz = load(pairs.offset[2][2]);
-    const auto ax = hn::Sub(load(pairs.offset[0][0]), hn::Mul(sx, az));
-    const auto ay = hn::Sub(load(pairs.offset[0][1]), hn::Mul(sy, az));
-    const auto bx = hn::Sub(load(pairs.offset[1][0]), hn::Mul(sx, bz));
-    const auto by = hn::Sub(load(pairs.offset[1][1]), hn::Mul(sy, bz));
-    const auto cx = hn::Sub(load(pairs.offset[2][0]), hn::Mul(sx, cz));
-    const auto cy = hn::Sub(load(pairs.offset[2][1]), hn::Mul(sy, cz));
+    const auto az = axes.z_of(columns.corner[0]);
+    const auto bz = axes.z_of(columns.corner[1]);
+    const auto cz = axes.z_of(columns.corner[2]);
+    const auto ax = hn::Sub(axes.x_of(columns.corner[0]), hn::Mul(sx, az));
+    const auto ay = hn::Sub(axes.y_of(columns.corner[0]), hn::Mul(sy, az));
+    const auto bx = hn::Sub(axes.x_of(columns.corner[1]), hn::Mul(sx, bz));
+    const auto by = hn::Sub(axes.y_of(columns.corner[1]), hn::Mul(sy, bz));
+    const auto cx = hn::Sub(axes.x_of(columns.corner[2]), hn::Mul(sx, cz));
+    const auto cy = hn::Sub(axes.y_of(columns.corner[2]), hn::Mul(sy, cz));
     const auto u = hn::Sub(hn::Mul(cx, by), hn::Mul(cy, bx));
     const auto v = hn::Sub(hn::Mul(ax, cy), hn::Mul(ay, cx));
     const auto w = hn::Sub(hn::Mul(bx, ay), hn::Mul(by, ax));
@@ -121,13 +248,15 @@ inline void decide(const TrianglePairs& pairs, TriangleAnswers& answers) {
     const auto hit = hn::And(hn::Or(positive, negative), hn::Gt(hn::Abs(determinant), zero));
     const auto scaled = ordered_sum(hn::Mul(u, hn::Mul(sz, az)), hn::Mul(v, hn::Mul(sz, bz)),
                                     hn::Mul(w, hn::Mul(sz, cz)));
-    hn::Store(hn::Div(scaled, determinant), d, answers.t.data());
-    hn::Store(hn::Div(v, determinant), d, answers.u.data());
-    hn::Store(hn::Div(w, determinant), d, answers.v.data());
-    hn::Store(determinant, d, answers.determinant.data());
+    const hn::Rebind<float, Doubles> of_float;
+    hn::Store(hn::DemoteTo(of_float, hn::Div(scaled, determinant)), of_float, answers.t.data());
+    hn::Store(hn::DemoteTo(of_float, hn::Div(v, determinant)), of_float, answers.u.data());
+    hn::Store(hn::DemoteTo(of_float, hn::Div(w, determinant)), of_float, answers.v.data());
     std::uint8_t stored[8] = {};
     hn::StoreMaskBits(d, hit, stored);
     answers.hit = stored[0];
+    hn::StoreMaskBits(d, hn::Gt(determinant, zero), stored);
+    answers.front = stored[0];
 }
 
 // Decides the mask's rays, each with a triangle that set(ray, pairs, lane) puts into a lane; false:
@@ -145,9 +274,27 @@ void decide_rays(std::uint64_t mask, const Set& set, const Settle& settle) {
         }
         if (count == 0) return;
         pairs.fill_from(count);
-        decide(pairs, answers);
+        decide(TriangleColumns(pairs), answers);
         for (std::size_t lane = 0; lane < count; ++lane)
             settle(rays[lane], answers, lane);
+    }
+}
+
+// The mask's rays with one triangle in their space.
+template <typename Settle>
+void decide_alike(const GroupRays& rays, RayMask mask, const TriangleCorners& corners,
+                  const Settle& settle) {
+    constexpr RayMask kSome = (RayMask{1} << kDoublesAtOnce) - 1;
+    TriangleAnswers answers;
+    while (mask != 0) {
+        const auto first =
+            static_cast<std::size_t>(std::countr_zero(mask)) / kDoublesAtOnce * kDoublesAtOnce;
+        decide(TriangleColumns(rays, first, corners), answers);
+        for (RayMask some = mask & (kSome << first); some != 0; some &= some - 1) {
+            const auto ray = static_cast<std::size_t>(std::countr_zero(some));
+            settle(ray, answers, ray - first);
+        }
+        mask &= ~(kSome << first);
     }
 }
 

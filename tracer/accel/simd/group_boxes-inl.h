@@ -26,6 +26,7 @@ inline constexpr float kShrinkGroup = 1.0f - 8.0f * 5.9604645e-8f;
 // the earliest.
 struct BoxHits {
     std::uint32_t mask = 0;
+    std::uint32_t by_all = 0;                   // those that all lines meet, wherever on them
     HWY_ALIGN std::array<float, kWidth> enter;  // at the earliest; of those in the mask
 };
 
@@ -33,9 +34,12 @@ HWY_INLINE void meet_group(const GroupSpace& space, const WideNode& node, float 
                            BoxHits& hits) {
     const hn::CappedTag<float, kWidth> d;
     std::uint32_t mask = 0;
+    std::uint32_t by_all = 0;
     for (std::size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
         auto near = hn::Set(d, t_min);
         auto far = hn::Set(d, t_far);
+        auto last_near = near;
+        auto first_far = hn::Set(d, std::numeric_limits<float>::infinity());
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const bool negative = space.first[axis] >= 3;
             const float near_origin = negative ? space.origin_low[axis] - space.slop[axis]
@@ -48,8 +52,16 @@ HWY_INLINE void meet_group(const GroupSpace& space, const WideNode& node, float 
                                           hn::Set(d, near_origin));
             const auto to_second = hn::Sub(hn::Load(d, node.planes[space.second[axis]].data() + i),
                                            hn::Set(d, far_origin));
-            near = hn::Max(near, hn::Min(hn::Mul(to_first, low), hn::Mul(to_first, high)));
-            far = hn::Min(far, hn::Max(hn::Mul(to_second, low), hn::Mul(to_second, high)));
+            const auto near_low = hn::Mul(to_first, low);
+            const auto near_high = hn::Mul(to_first, high);
+            const auto far_low = hn::Mul(to_second, low);
+            const auto far_high = hn::Mul(to_second, high);
+            near = hn::Max(near, hn::Min(near_low, near_high));
+            far = hn::Min(far, hn::Max(far_low, far_high));
+            if (space.one_origin) {
+                last_near = hn::Max(last_near, hn::Max(near_low, near_high));
+                first_far = hn::Min(first_far, hn::Min(far_low, far_high));
+            }
         }
         near = hn::Mul(near, hn::Set(d, kShrinkGroup));
         far = hn::Mul(far, hn::Set(d, kGrowGroup));
@@ -57,8 +69,12 @@ HWY_INLINE void meet_group(const GroupSpace& space, const WideNode& node, float 
         std::uint8_t bits[8] = {};
         hn::StoreMaskBits(d, hn::Le(near, far), bits);
         mask |= static_cast<std::uint32_t>(bits[0]) << i;
+        if (!space.one_origin) continue;
+        hn::StoreMaskBits(d, hn::Le(last_near, first_far), bits);
+        by_all |= static_cast<std::uint32_t>(bits[0]) << i;
     }
     hits.mask = mask;
+    hits.by_all = by_all;
 }
 
 // Of the rays in `mask` those that may meet child i before their t_far.
@@ -123,32 +139,39 @@ void walk_group(const WideBvh& bvh, const WideRef& start, const GroupSpace& spac
         RayMask mask;
         std::uint32_t ref;
         float enter;
+        float far;  // of its rays, when `leaves` was as many
+        std::uint32_t leaves;
     };
     Waiting stack[WideBvh::kMostWaiting];  // NOLINT: not initialised, for it is large
     std::size_t waiting = 0;
-    stack[waiting++] = {rays, start.bits, 0.0f};
+    std::uint32_t leaves = 0;  // so many were there, and perhaps made the rays shorter
+    stack[waiting++] = {rays, start.bits, space.t_least(), farthest(limits, rays), leaves};
     BoxHits hits;
     while (waiting > 0) {
         const Waiting at = stack[--waiting];
-        const float far = farthest(limits, at.mask);
+        const float far = at.leaves == leaves ? at.far : farthest(limits, at.mask);
         if (!(at.enter <= far)) continue;
         const WideRef ref{at.ref};
         if (ref.is_leaf()) {
             leaf(ref, at.mask);
+            ++leaves;
             continue;
         }
         if (std::popcount(at.mask) <= kFewRays) {
             few(ref, at.mask);
+            ++leaves;
             continue;
         }
         const WideNode& node = bvh.nodes[ref.index()];
-        meet_group(space, node, 0.0f, far, hits);
+        meet_group(space, node, space.t_least(), far, hits);
         std::uint32_t order = node.far_to_near(space.octant);
         for (std::size_t k = 0; k < kWidth; ++k, order >>= 3) {
             const std::size_t i = order & 7u;
             if (((hits.mask >> i) & 1u) == 0) continue;
-            const RayMask mask = meet_rays(space, limits, node, i, at.mask);
-            if (mask != 0) stack[waiting++] = {mask, node.child[i], hits.enter[i]};
+            const RayMask mask = ((hits.by_all >> i) & 1u) != 0
+                                     ? at.mask
+                                     : meet_rays(space, limits, node, i, at.mask);
+            if (mask != 0) stack[waiting++] = {mask, node.child[i], hits.enter[i], far, leaves};
         }
     }
 }

@@ -7,6 +7,7 @@
 #endif
 
 #include "tracer/accel/searches.h"
+#include "tracer/accel/simd/decide_triangles-inl.h"
 #include "tracer/accel/simd/ray_group-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -14,6 +15,15 @@ namespace raypick::HWY_NAMESPACE {
 
 // Wider than a tie's window and what rounding adds to it.
 inline constexpr float kBeyondTie = 1.0f + 0x1p-18f;
+
+// What some rays of a group surely meet, and perhaps hit.
+struct Candidate {
+    std::uint32_t object;  // index
+    std::uint32_t primitive;
+    // Of a triangle, kept as long as they are at hand, in the instance's space. Null: they weren't.
+    const Instance* instance;
+    TriangleCorners corners;
+};
 
 // The closest hits of a group. What float bounds make sure of needs no more than its number until
 // the end: then the one scalar test works out its t. A ray's first such candidate, or one that
@@ -26,16 +36,33 @@ struct ClosestOfGroup {
         std::uint32_t primitive;
     };
     static constexpr std::size_t kMostRivals = 256;
+    static constexpr std::uint32_t kMostCandidates = 128;
 
     GroupLimits limits;
     HWY_ALIGN GroupFloats candidate_from;  // t is at least this; infinite if there is none
-    HWY_ALIGN std::array<std::uint32_t, kGroup> candidate_object;  // index
-    HWY_ALIGN std::array<std::uint32_t, kGroup> candidate_primitive;
+    HWY_ALIGN std::array<std::uint32_t, kGroup> candidate;  // its place in `candidates`
+    HWY_ALIGN std::array<Candidate, kMostCandidates> candidates;
+    std::uint32_t candidate_count = 0;
     RayMask found = 0;  // rays with a candidate
     RayMask rivalled = 0;
     RayMask lost = 0;  // rays with too many rivals, to be traced one by one
     std::array<Rival, kMostRivals> rivals;
     std::size_t rival_count = 0;
+
+    [[nodiscard]] const GroupLimits& limits_in(const GroupSpace& /*space*/) const { return limits; }
+    [[nodiscard]] const Candidate& candidate_of(std::size_t ray) const {
+        return candidates[candidate[ray]];
+    }
+    [[nodiscard]] bool full() const { return candidate_count == kMostCandidates; }
+
+    // Only while it isn't full.
+    Candidate& add_candidate(std::uint32_t object, std::uint32_t primitive) {
+        Candidate& added = candidates[candidate_count++];
+        added.object = object;
+        added.primitive = primitive;
+        added.instance = nullptr;
+        return added;
+    }
 
     void add_rival(std::size_t ray, std::uint32_t object, std::uint32_t primitive) {
         rivalled |= RayMask{1} << ray;
@@ -51,13 +78,13 @@ struct ClosestOfGroup {
     void offer(std::size_t ray, std::uint32_t object, std::uint32_t primitive, float t) {
         const float window = tie_limit(t);
         limits.t_far[ray] = std::min(limits.t_far[ray], window);
-        if (!(window * kBeyondTie < candidate_from[ray])) {
+        if (!(window * kBeyondTie < candidate_from[ray]) || full()) {
             add_rival(ray, object, primitive);
             return;
         }
         candidate_from[ray] = t;
-        candidate_object[ray] = object;
-        candidate_primitive[ray] = primitive;
+        candidate[ray] = candidate_count;
+        add_candidate(object, primitive);
         found |= RayMask{1} << ray;
     }
 };
@@ -65,12 +92,18 @@ struct ClosestOfGroup {
 // Which rays of a group hit anything.
 struct AnyOfGroup {
     GroupLimits limits;
+    GroupLimits back;  // of the same rays backwards; in use where they are followed so
     RayMask blocked = 0;
+
+    [[nodiscard]] const GroupLimits& limits_in(const GroupSpace& space) const {
+        return space.course.backwards() ? back : limits;
+    }
 
     void block(RayMask rays) {
         blocked |= rays;
         each_ray(rays, [&](std::size_t ray) HWY_ATTR {
             limits.t_far[ray] = -std::numeric_limits<float>::infinity();
+            back.t_far[ray] = -std::numeric_limits<float>::infinity();
         });
     }
 };

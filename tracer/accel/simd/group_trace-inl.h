@@ -7,6 +7,7 @@
 #endif
 
 #include "tracer/accel/simd/decide_triangles-inl.h"
+#include "tracer/accel/simd/group_back-inl.h"
 #include "tracer/accel/simd/group_boxes-inl.h"
 #include "tracer/accel/simd/group_cones-inl.h"
 #include "tracer/accel/simd/group_search-inl.h"
@@ -17,6 +18,7 @@
 
 #include <cstddef>
 #include <span>
+#include <utility>
 
 HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
@@ -37,9 +39,21 @@ public:
         for (const std::uint32_t object : state_.unbounded)
             each_on_its_own({object, {}}, mask);
         if (state_.top.empty()) return;
-        const GroupSpace world(group, mask, 0.0f, state_.reach);
+        enter_world(GroupSpace(group, mask, 0.0f, state_.reach), mask);
+    }
+
+    // The same backwards.
+    void run_back(const GroupBack& back, RayMask mask) {
+        for (const std::uint32_t object : state_.unbounded)
+            each_on_its_own({object, {}}, mask);
+        if (state_.top.empty()) return;
+        enter_world(GroupSpace(back.rays, mask, 0.0f, state_.reach, back.course), mask);
+    }
+
+private:
+    void enter_world(const GroupSpace& world, RayMask mask) {
         walk_group(
-            state_.top, state_.top.root, world, search_.limits, mask,
+            state_.top, state_.top.root, world, search_.limits_in(world), mask,
             [&](const WideRef& leaf, RayMask met) HWY_ATTR {
                 each_index(state_.top, leaf, [&](std::uint32_t entry) HWY_ATTR {
                     enter(state_.entries[entry], world, met);
@@ -49,7 +63,6 @@ public:
             [&](const WideRef& part, RayMask met) HWY_ATTR { finish_top(part, met); });
     }
 
-private:
     // What is left of the top tree, ray by ray.
     void finish_top(const WideRef& part, RayMask mask) {
         each_ray(mask, [&](std::size_t ray) HWY_ATTR {
@@ -106,38 +119,53 @@ private:
             each_on_its_own(entry, mask);
             return;
         }
+        if (world.course.backwards() && !std::holds_alternative<MeshInstance>(object.shape)) {
+            enter(entry, GroupSpace(*world.course.forward, mask, 0.0f, state_.reach), mask);
+            return;
+        }
         if (instance.identity) {
             enter_tree(entry, world, mask);
             return;
         }
-        GroupRays turned{};
-        each_ray(mask, [&](std::size_t ray) HWY_ATTR {
-            const ObjectRay local = object_ray(instance, rays_[ray]);
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const auto i = static_cast<int>(axis);
-                turned.origin[axis][ray] = static_cast<float>(local.origin[i]);
-                turned.direction[axis][ray] = static_cast<float>(local.direction[i]);
-            }
-        });
-        turned.invert();
+        enter_placed(entry, world, mask, reach);
+    }
+
+    // A mesh or a set with a space of its own.
+    void enter_placed(const TopEntry& entry, const GroupSpace& world, RayMask mask, float reach) {
+        const Instance& instance = state_.instances[entry.object];
+        GroupRays forward{};
+        each_ray(mask, [&](std::size_t ray)
+                           HWY_ATTR { forward.set(ray, object_ray(instance, rays_[ray])); });
+        forward.invert();
+        GroupRays back;  // NOLINT: not initialised, as it is large
+        GroupCourse course = world.course;
+        if (course.backwards()) {
+            const glm::vec3 end(world.origin_low[0], world.origin_low[1], world.origin_low[2]);
+            back.set_backwards(forward,
+                               glm::vec3(instance.object_from_world.point(glm::dvec3(end))));
+            course = course_in_object(course, instance.object_from_world, forward);
+        }
+        const GroupRays& turned = course.backwards() ? back : forward;
         // An instance of another scale may leave nothing of a ray that float can hold.
-        const RayMask ordinary = mask & turned.within(kFarthestReach, 1e-6f, 1e6f);
+        const RayMask ordinary = mask & forward.within(kFarthestReach, 1e-6f, 1e6f) &
+                                 turned.within(kFarthestReach, 1e-6f, 1e6f);
         each_on_its_own(entry, mask & ~ordinary);
         // Rays of one octant may lie in several here.
         for (const RayMask same : turned.octants(ordinary)) {
             if (std::popcount(same) <= kFewRays) {
                 each_on_its_own(entry, same);
             } else {
-                enter_tree(entry, GroupSpace(turned, same, instance.slop, reach), same);
+                enter_tree(entry, GroupSpace(turned, same, instance.slop, reach, course), same);
             }
         }
     }
 
     void enter_tree(const TopEntry& entry, const GroupSpace& space, RayMask mask) {
         const Object& object = state_.scene->objects[entry.object];
-        const ShownSides shown{shows(object.sides, true) && shows(query_.sides, true),
-                               shows(object.sides, false) && shows(query_.sides, false)};
+        ShownSides shown{shows(object.sides, true) && shows(query_.sides, true),
+                         shows(object.sides, false) && shows(query_.sides, false)};
         if (!shown.front && !shown.back) return;
+        if (space.course.backwards()) std::swap(shown.front, shown.back);
         const Instance& instance = state_.instances[entry.object];
         const PrimitiveTree& tree = *instance.tree;
         if (std::holds_alternative<MeshInstance>(object.shape)) {
@@ -150,7 +178,7 @@ private:
                     left &= (1u << patch.triangles) - 1u;
                     for (; left != 0; left &= left - 1) {
                         const auto i = static_cast<std::size_t>(std::countr_zero(left));
-                        judge_all(entry, space, shown, GroupTriangle{triangles, i},
+                        judge_all(entry, space, shown, GroupTriangle{triangles, patch, i},
                                   patch.primitives()[i], met);
                     }
                     return false;
@@ -183,8 +211,9 @@ private:
     template <typename Leaf>
     HWY_INLINE void search_tree(const TopEntry& entry, const GroupSpace& space, RayMask mask,
                                 const Leaf& leaf) {
-        walk_group(state_.instances[entry.object].tree->bvh, entry.part, space, search_.limits,
-                   mask, leaf, [&](const WideRef& part, RayMask met) HWY_ATTR {
+        walk_group(state_.instances[entry.object].tree->bvh, entry.part, space,
+                   search_.limits_in(space), mask, leaf,
+                   [&](const WideRef& part, RayMask met) HWY_ATTR {
                        if (std::holds_alternative<MeshInstance>(
                                state_.scene->objects[entry.object].shape)) {
                            few_in_mesh({entry.object, part}, met);
@@ -198,65 +227,87 @@ private:
     HWY_INLINE void judge_all(const TopEntry& entry, const GroupSpace& space,
                               const ShownSides& shown, const Shape& shape, std::uint32_t primitive,
                               RayMask mask) {
-        const bool holes = state_.instances[entry.object].holes;
+        Taken<Shape> taken{shape, state_.instances[entry.object], entry.object, primitive};
         each_vector(mask, [&](std::size_t ray, RayMask bits) HWY_ATTR {
             const Verdict verdict = judge_some(space, search_.limits, shape, shown, ray, bits);
             if ((verdict.may & bits) == 0) return;
-            settle(verdict, ray, bits, entry.object, primitive, holes);
+            settle(space, verdict, ray, bits, taken);
         });
     }
 
-    void settle(const Verdict& verdict, std::size_t ray, RayMask bits, std::uint32_t object,
-                std::uint32_t primitive, bool holes) {
+    template <typename Shape>
+    void settle(const GroupSpace& space, const Verdict& verdict, std::size_t ray, RayMask bits,
+                Taken<Shape>& taken) {
         RayMask open = 0;
         if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
-            open = take(search_, verdict, ray, bits, object, primitive, holes) << ray;
+            open = take(search_, verdict, ray, bits, taken) << ray;
         } else {
-            const RayMask sure = holes ? 0 : verdict.sure & bits;
+            const RayMask sure = taken.instance.holes ? 0 : verdict.sure & bits;
             search_.block(sure << ray);
             open = (verdict.may & bits & ~sure) << ray;
         }
         if (open == 0) return;
-        if (!holes && std::holds_alternative<MeshInstance>(state_.scene->objects[object].shape)) {
-            decide_open(object, primitive, open);
-        } else if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
-            each_ray(open,
-                     [&](std::size_t i) HWY_ATTR { search_.add_rival(i, object, primitive); });
+        if constexpr (std::is_same_v<Shape, GroupTriangle>) {
+            if (!taken.instance.holes) {
+                decide_open(space, taken.object, taken.shape, taken.primitive, open);
+                return;
+            }
+        }
+        if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
+            each_ray(open, [&](std::size_t i)
+                               HWY_ATTR { search_.add_rival(i, taken.object, taken.primitive); });
         } else {
             each_ray(open, [&](std::size_t i) HWY_ATTR {
                 AnyOfOne one{search_, i};
-                trace_primitive(state_, object, primitive, rays_[i], query_, one);
+                trace_primitive(state_, taken.object, taken.primitive, rays_[i], query_, one);
             });
         }
     }
 
     // Rays that the bounds leave open, as all do that begin on the triangle itself.
-    void decide_open(std::uint32_t index, std::uint32_t primitive, RayMask mask) {
-        const Object& object = state_.scene->objects[index];
-        const Mesh& mesh = state_.scene->meshes[std::get<MeshInstance>(object.shape).mesh];
-        const glm::uvec3 corner = mesh.triangles[primitive];
-        const glm::vec3& a = mesh.positions[corner.x];
-        const glm::vec3& b = mesh.positions[corner.y];
-        const glm::vec3& c = mesh.positions[corner.z];
-        if (!has_area(a, b, c)) return;
+    void decide_open(const GroupSpace& space, std::uint32_t object, const GroupTriangle& triangle,
+                     std::uint32_t primitive, RayMask mask) {
+        TriangleCorners corners;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const glm::vec3 p = triangle.patch.position(static_cast<std::uint32_t>(triangle.i),
+                                                        static_cast<int>(k));
+            corners[k] = {p.x, p.y, p.z, 0.0f};
+        }
+        if (!has_area(glm::vec3(corners[0][0], corners[0][1], corners[0][2]),
+                      glm::vec3(corners[1][0], corners[1][1], corners[1][2]),
+                      glm::vec3(corners[2][0], corners[2][1], corners[2][2])))
+            return;
+        const Instance& instance = state_.instances[object];
+        const auto settle_one =
+            [&](std::size_t ray, const TriangleAnswers& answers, std::size_t lane)
+                HWY_ATTR { offer_open(object, primitive, ray, answers, lane); };
+        if (instance.identity) {
+            decide_alike(space.course.backwards() ? *space.course.forward : space.rays, mask,
+                         corners, settle_one);
+            return;
+        }
         decide_rays(
             mask,
             [&](std::size_t ray, TrianglePairs& pairs, std::size_t lane) HWY_ATTR {
-                const ObjectRay local = object_ray(state_.instances[index], rays_[ray]);
-                pairs.set(lane, local.origin, local.direction, a, b, c);
+                pairs.set_ray(lane, object_ray(instance, rays_[ray]));
+                for (std::size_t k = 0; k < 3; ++k)
+                    pairs.corners[k][lane] = corners[k];
                 return true;
             },
-            [&](std::size_t ray, const TriangleAnswers& answers, std::size_t lane) HWY_ATTR {
-                if (!answers.hits(lane, rays_[ray].t_min, rays_[ray].t_max)) return;
-                const bool front = answers.determinant[lane] > 0.0;
-                if (!shows(object.sides, front) || !shows(query_.sides, front)) return;
-                const auto t = static_cast<float>(answers.t[lane]);
-                if constexpr (std::is_same_v<Group, AnyOfGroup>) {
-                    search_.block(RayMask{1} << ray);
-                } else if (t <= search_.limits.t_far[ray]) {
-                    search_.offer(ray, index, primitive, t);
-                }
-            });
+            settle_one);
+    }
+
+    HWY_INLINE void offer_open(std::uint32_t index, std::uint32_t primitive, std::size_t ray,
+                               const TriangleAnswers& answers, std::size_t lane) {
+        if (!answers.hits(lane, rays_[ray].t_min, rays_[ray].t_max)) return;
+        const bool front = answers.hits_front(lane);
+        const Object& object = state_.scene->objects[index];
+        if (!shows(object.sides, front) || !shows(query_.sides, front)) return;
+        if constexpr (std::is_same_v<Group, AnyOfGroup>) {
+            search_.block(RayMask{1} << ray);
+        } else if (answers.t[lane] <= search_.limits.t_far[ray]) {
+            search_.offer(ray, index, primitive, answers.t[lane]);
+        }
     }
 
     const AccelState& state_;

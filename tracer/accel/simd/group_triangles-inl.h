@@ -40,6 +40,8 @@ struct GroupTriangles {
     HWY_ALIGN Numbers edge_error;
     HWY_ALIGN Numbers slope_error;   // of n . d
     HWY_ALIGN Numbers height_error;  // of n . (a - o)
+    // Backwards: what a ray adds to that with each unit of its a - o.
+    HWY_ALIGN Numbers height_growth;
     // Of one origin only.
     HWY_ALIGN Vectors u;
     HWY_ALIGN Vectors v;
@@ -127,8 +129,12 @@ HWY_INLINE std::uint32_t set_triangles(const GroupSpace& space, const TrianglePa
     hn::Store(
         hn::MulAdd(hn::Mul(edge, edge), hn::Set(d, 48.0f * kUnit * space.steepest_direction), tiny),
         d, triangles.slope_error.data() + first);
-    hn::Store(hn::MulAdd(hn::Mul(rounded, edge), hn::Set(d, 48.0f * kUnit), tiny), d,
-              triangles.height_error.data() + first);
+    const auto of_height = hn::Mul(hn::Mul(edge, edge), hn::Set(d, 48.0f * kUnit));
+    const auto from_origin = space.course.backwards()
+                                 ? hn::Set(d, space.forward_rounding)
+                                 : hn::Add(reach, hn::Set(d, space.origin_rounding));
+    hn::Store(hn::MulAdd(of_height, from_origin, tiny), d, triangles.height_error.data() + first);
+    hn::Store(of_height, d, triangles.height_growth.data() + first);
     if (!space.one_origin) return (1u << kTrianglesAtOnce) - 1u;
     const TriangleVectors from_a = a - low;
     const TriangleVectors u = cross(b - low, edge_bc);
@@ -153,8 +159,20 @@ HWY_INLINE std::uint32_t set_triangles(const GroupSpace& space, const TrianglePa
 // One of a patch's triangles.
 struct GroupTriangle {
     const GroupTriangles& all;
+    const TrianglePatch& patch;
     std::size_t i;
 };
+
+inline void keep(const GroupTriangle& triangle, const Instance& instance, Candidate& candidate) {
+    candidate.instance = &instance;
+    for (int k = 0; k < 3; ++k) {
+        const glm::vec3 p = triangle.patch.position(static_cast<std::uint32_t>(triangle.i), k);
+        candidate.corners[static_cast<std::size_t>(k)] = {p.x, p.y, p.z, 0.0f};
+    }
+}
+// Of what is no triangle there is nothing to keep.
+template <typename Shape>
+void keep(const Shape& /*shape*/, const Instance& /*instance*/, Candidate& /*candidate*/) {}
 
 struct EdgeFunctions {
     RayFloats u, v, w;
@@ -200,6 +218,28 @@ HWY_INLINE EdgeFunctions edge_functions(const GroupSpace& space, const GroupTria
     return f;
 }
 
+// n . (a - o) of the rays as they are, signed as the slope is, and its error: near a ray's own
+// origin it is most exact.
+struct Height {
+    RayFloats value;
+    RayFloats error;
+};
+
+HWY_INLINE Height height_above(const GroupSpace& space, const GroupTriangle& triangle,
+                               const EdgeFunctions& f, std::size_t ray) {
+    const Rays d;
+    const GroupTriangles& all = triangle.all;
+    const std::size_t i = triangle.i;
+    if (!space.course.backwards()) return {f.height, hn::Set(d, all.height_error[i])};
+    const auto& origin = space.course.forward->origin;
+    const auto x = hn::Sub(hn::Load(d, origin[0].data() + ray), hn::Set(d, all.a[0][i]));
+    const auto y = hn::Sub(hn::Load(d, origin[1].data() + ray), hn::Set(d, all.a[1][i]));
+    const auto z = hn::Sub(hn::Load(d, origin[2].data() + ray), hn::Set(d, all.a[2][i]));
+    const auto reach = hn::Max(hn::Max(hn::Abs(x), hn::Abs(y)), hn::Abs(z));
+    return {dot(all.n, i, x, y, z),
+            hn::MulAdd(reach, hn::Set(d, all.height_growth[i]), hn::Set(d, all.height_error[i]))};
+}
+
 // What the bounds say of a vector of rays.
 struct Verdict {
     RayMask may = 0;   // hit
@@ -230,9 +270,9 @@ HWY_INLINE Verdict judge(const GroupSpace& space, const GroupLimits& limits,
     verdict.may = ~ray_bits(missed) & kAll;
     if (verdict.may == 0) return verdict;
     const auto slope = hn::Abs(f.slope);
-    const auto height = hn::Xor(f.height, hn::And(f.slope, hn::SignBit(d)));
     const auto slope_error = hn::Set(d, triangle.all.slope_error[triangle.i]);
-    const auto height_error = hn::Set(d, triangle.all.height_error[triangle.i]);
+    const auto [above, height_error] = height_above(space, triangle, f, ray);
+    const auto height = hn::Xor(above, hn::And(f.slope, hn::SignBit(d)));
     const auto t_min = hn::Load(d, limits.t_min.data() + ray);
     const auto t_far = hn::Load(d, limits.t_far.data() + ray);
     const auto grow = hn::Set(d, kGrowGroup);
@@ -255,16 +295,36 @@ HWY_INLINE Verdict judge(const GroupSpace& space, const GroupLimits& limits,
     return verdict;
 }
 
+// A primitive on its way into the candidates: it gets there with the first ray that it is one of.
+template <typename Shape>
+struct Taken {
+    const Shape& shape;
+    const Instance& instance;
+    std::uint32_t object;  // index
+    std::uint32_t primitive;
+    std::uint32_t place = ClosestOfGroup::kMostCandidates;
+
+    // False if there is no room.
+    HWY_INLINE bool enter(ClosestOfGroup& search) {
+        if (place < ClosestOfGroup::kMostCandidates) return true;
+        if (search.full()) return false;
+        place = search.candidate_count;
+        keep(shape, instance, search.add_candidate(object, primitive));
+        return true;
+    }
+};
+
 // Of the mask's rays in a vector those that surely hit: keeps them in place where they stand before
 // what was found, and makes rivals of the others. Returns those that may hit or not.
+template <typename Shape>
 HWY_INLINE RayMask take(ClosestOfGroup& search, const Verdict& verdict, std::size_t ray,
-                        RayMask bits, std::uint32_t object, std::uint32_t primitive, bool holes) {
+                        RayMask bits, Taken<Shape>& taken) {
     const Rays d;
     const hn::Rebind<std::uint32_t, Rays> du;
     const RayMask may = verdict.may & bits;
-    const RayMask sure = holes ? 0 : verdict.sure & bits;
+    const RayMask sure = taken.instance.holes ? 0 : verdict.sure & bits;
     RayMask rivals = sure;
-    if (sure != 0) {
+    if (sure != 0 && taken.enter(search)) {
         const auto from = hn::Load(d, search.candidate_from.data() + ray);
         const auto far = hn::Load(d, search.limits.t_far.data() + ray);
         const auto window = hn::Mul(verdict.to, hn::Set(d, kBeyondTie));
@@ -273,10 +333,8 @@ HWY_INLINE RayMask take(ClosestOfGroup& search, const Verdict& verdict, std::siz
                                   static_cast<std::uint8_t>(first >> 8)};
         const auto keep = hn::LoadMaskBits(d, stored);
         hn::BlendedStore(verdict.from, keep, d, search.candidate_from.data() + ray);
-        hn::BlendedStore(hn::Set(du, object), hn::RebindMask(du, keep), du,
-                         search.candidate_object.data() + ray);
-        hn::BlendedStore(hn::Set(du, primitive), hn::RebindMask(du, keep), du,
-                         search.candidate_primitive.data() + ray);
+        hn::BlendedStore(hn::Set(du, taken.place), hn::RebindMask(du, keep), du,
+                         search.candidate.data() + ray);
         std::uint8_t stored_sure[8] = {static_cast<std::uint8_t>(sure),
                                        static_cast<std::uint8_t>(sure >> 8)};
         hn::BlendedStore(hn::Min(far, window), hn::LoadMaskBits(d, stored_sure), d,
@@ -284,7 +342,8 @@ HWY_INLINE RayMask take(ClosestOfGroup& search, const Verdict& verdict, std::siz
         search.found |= first << ray;
         rivals &= ~first;
     }
-    each_ray(rivals, [&](std::size_t i) HWY_ATTR { search.add_rival(ray + i, object, primitive); });
+    each_ray(rivals, [&](std::size_t i)
+                         HWY_ATTR { search.add_rival(ray + i, taken.object, taken.primitive); });
     return may & ~sure;
 }
 

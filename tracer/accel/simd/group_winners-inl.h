@@ -22,8 +22,8 @@ inline void choose(const AccelState& state, const ClosestOfGroup& search, std::s
                    const Ray& from, const RayQuery& query, Hit& hit) {
     const auto offer_all = [&](auto& one) HWY_ATTR {
         if (((search.found >> ray) & 1) != 0) {
-            trace_primitive(state, search.candidate_object[ray], search.candidate_primitive[ray],
-                            from, query, one);
+            const Candidate& candidate = search.candidate_of(ray);
+            trace_primitive(state, candidate.object, candidate.primitive, from, query, one);
         }
         for (std::size_t i = 0; i < search.rival_count; ++i) {
             const ClosestOfGroup::Rival& rival = search.rivals[i];
@@ -42,47 +42,107 @@ inline void choose(const AccelState& state, const ClosestOfGroup& search, std::s
     hit = lowest.winner();
 }
 
-// The candidates of rays without rivals as far as they are triangles, several at once; the other
-// rays stay in the mask that it returns.
-inline RayMask decide_sole_triangles(const AccelState& state, const ClosestOfGroup& search,
-                                     RayMask mask, std::span<const Ray> rays, std::span<Hit> hits) {
-    const Scene& scene = *state.scene;
-    RayMask left = 0;
-    decide_rays(
-        mask,
-        [&](std::size_t ray, TrianglePairs& pairs, std::size_t lane) HWY_ATTR {
-            const std::uint32_t object = search.candidate_object[ray];
-            const auto* instance = std::get_if<MeshInstance>(&scene.objects[object].shape);
-            if (instance == nullptr) {
-                left |= RayMask{1} << ray;
-                return false;
-            }
-            const Mesh& mesh = scene.meshes[instance->mesh];
-            const glm::uvec3 corner = mesh.triangles[search.candidate_primitive[ray]];
-            const ObjectRay local = object_ray(state.instances[object], rays[ray]);
-            pairs.set(lane, local.origin, local.direction, mesh.positions[corner.x],
-                      mesh.positions[corner.y], mesh.positions[corner.z]);
-            return true;
-        },
-        [&](std::size_t ray, const TriangleAnswers& answers, std::size_t lane) HWY_ATTR {
-            if (!answers.hits(lane, rays[ray].t_min, rays[ray].t_max)) {
-                left |= RayMask{1} << ray;
-                return;
-            }
-            hits[ray] = {scene.objects[search.candidate_object[ray]].id,
-                         search.candidate_primitive[ray],
-                         static_cast<float>(answers.t[lane]),
-                         {static_cast<float>(answers.u[lane]), static_cast<float>(answers.v[lane])},
-                         answers.determinant[lane] > 0.0};
-        });
-    return left;
-}
+// Candidates of rays without rivals as far as they are triangles, several at once.
+class SoleTriangles {
+public:
+    // `world` holds the rays.
+    SoleTriangles(const AccelState& state, const ClosestOfGroup& search, const GroupRays& world,
+                  std::span<const Ray> rays, std::span<Hit> hits)
+        : state_(state), search_(search), world_(world), rays_(rays), hits_(hits) {}
 
-// The hits of all rays that found something and aren't lost.
+    // Those that it doesn't decide stay in the mask that it returns.
+    RayMask decide(RayMask mask) {
+        const RayMask others = decide_neighbours(mask);
+        decide_rays(
+            others,
+            [&](std::size_t ray, TrianglePairs& pairs, std::size_t lane)
+                HWY_ATTR { return set(ray, pairs, lane); },
+            [&](std::size_t ray, const TriangleAnswers& answers, std::size_t lane)
+                HWY_ATTR { settle(ray, answers, lane); });
+        return left_;
+    }
+
+private:
+    // As many neighbours with one candidate are decided where they are.
+    static constexpr int kWorthwhile = 6;
+
+    // Returns the others.
+    RayMask decide_neighbours(RayMask mask) {
+        RayMask others = mask;
+        each_vector(mask, [&](std::size_t first, RayMask bits) HWY_ATTR {
+            for (RayMask some = bits << first; some != 0;) {
+                const auto ray = static_cast<std::size_t>(std::countr_zero(some));
+                const RayMask alike =
+                    some & (with_candidate(first, search_.candidate[ray]) << first);
+                some &= ~alike;
+                if (std::popcount(alike) < kWorthwhile) continue;
+                const Candidate& candidate = search_.candidate_of(ray);
+                if (candidate.instance == nullptr || !candidate.instance->identity) continue;
+                others &= ~alike;
+                decide_alike(world_, alike, candidate.corners,
+                             [&](std::size_t i, const TriangleAnswers& answers, std::size_t lane)
+                                 HWY_ATTR { settle(i, answers, lane); });
+            }
+        });
+        return others;
+    }
+
+    [[nodiscard]] HWY_INLINE RayMask with_candidate(std::size_t first, std::uint32_t place) const {
+        const Rays d;
+        const hn::Rebind<std::uint32_t, Rays> du;
+        const auto places = hn::Load(du, search_.candidate.data() + first);
+        return ray_bits(hn::RebindMask(d, hn::Eq(places, hn::Set(du, place))));
+    }
+
+    HWY_INLINE bool set(std::size_t ray, TrianglePairs& pairs, std::size_t lane) {
+        const Candidate& candidate = search_.candidate_of(ray);
+        if (candidate.instance != nullptr) {
+            set_ray(*candidate.instance, rays_[ray], lane, pairs);
+            for (std::size_t k = 0; k < 3; ++k)
+                pairs.corners[k][lane] = candidate.corners[k];
+            return true;
+        }
+        const Scene& scene = *state_.scene;
+        const auto* instance = std::get_if<MeshInstance>(&scene.objects[candidate.object].shape);
+        if (instance == nullptr) {
+            left_ |= RayMask{1} << ray;
+            return false;
+        }
+        const Mesh& mesh = scene.meshes[instance->mesh];
+        const glm::uvec3 corner = mesh.triangles[candidate.primitive];
+        set_ray(state_.instances[candidate.object], rays_[ray], lane, pairs);
+        pairs.set_corners(lane, mesh.positions[corner.x], mesh.positions[corner.y],
+                          mesh.positions[corner.z]);
+        return true;
+    }
+
+    HWY_INLINE void settle(std::size_t ray, const TriangleAnswers& answers, std::size_t lane) {
+        if (!answers.hits(lane, rays_[ray].t_min, rays_[ray].t_max)) {
+            left_ |= RayMask{1} << ray;
+            return;
+        }
+        const Candidate& candidate = search_.candidate_of(ray);
+        hits_[ray] = {state_.scene->objects[candidate.object].id,
+                      candidate.primitive,
+                      answers.t[lane],
+                      {answers.u[lane], answers.v[lane]},
+                      answers.hits_front(lane)};
+    }
+
+    const AccelState& state_;
+    const ClosestOfGroup& search_;
+    const GroupRays& world_;
+    std::span<const Ray> rays_;
+    std::span<Hit> hits_;
+    RayMask left_ = 0;
+};
+
+// The hits of all rays that found something and aren't lost. `world` holds the rays.
 inline void decide_winners(const AccelState& state, const ClosestOfGroup& search,
-                           std::span<const Ray> rays, const RayQuery& query, std::span<Hit> hits) {
+                           const GroupRays& world, std::span<const Ray> rays, const RayQuery& query,
+                           std::span<Hit> hits) {
     const RayMask sole = search.found & ~search.rivalled;
-    const RayMask elements = decide_sole_triangles(state, search, sole, rays, hits);
+    const RayMask elements = SoleTriangles(state, search, world, rays, hits).decide(sole);
     RayMask open = search.rivalled & ~search.lost;
     open |= decide_sole_elements(state, search, elements, rays, query, hits);
     each_ray(open, [&](std::size_t ray)

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include <hwy/highway.h>
@@ -54,6 +55,11 @@ template <class M>
 HWY_INLINE RayMask ray_bits(M mask) {
     std::uint8_t stored[8] = {};
     hn::StoreMaskBits(Rays(), mask, stored);
+    if constexpr (std::endian::native == std::endian::little) {
+        std::uint16_t bits = 0;
+        std::memcpy(&bits, stored, sizeof(bits));
+        return bits;
+    }
     return static_cast<RayMask>(stored[0]) | static_cast<RayMask>(stored[1]) << 8;
 }
 
@@ -71,6 +77,29 @@ struct GroupRays {
     HWY_ALIGN std::array<GroupFloats, 3> origin;
     HWY_ALIGN std::array<GroupFloats, 3> direction;
     HWY_ALIGN std::array<GroupFloats, 3> inverse;  // 1 / direction, clamped
+
+    void set(std::size_t ray, const ObjectRay& from) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto i = static_cast<int>(axis);
+            origin[axis][ray] = static_cast<float>(from.origin[i]);
+            direction[axis][ray] = static_cast<float>(from.direction[i]);
+        }
+    }
+
+    // The same rays the other way from `end`.
+    void set_backwards(const GroupRays& rays, const glm::vec3& end) {
+        const Rays d;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            origin[axis].fill(end[static_cast<int>(axis)]);
+            for (std::size_t i = 0; i < kGroup; i += kAtOnce) {
+                const auto reverse = [&](const GroupFloats& from, GroupFloats& to) HWY_ATTR {
+                    hn::Store(hn::Neg(hn::Load(d, from.data() + i)), d, to.data() + i);
+                };
+                reverse(rays.direction[axis], direction[axis]);
+                reverse(rays.inverse[axis], inverse[axis]);
+            }
+        }
+    }
 
     void invert() {
         const Rays d;
@@ -126,9 +155,19 @@ struct GroupRays {
     }
 };
 
+// How a group is followed: along its rays, or backwards from a point where all of them end.
+struct GroupCourse {
+    const GroupRays* forward = nullptr;  // the rays as they are, if they are followed backwards
+    float stray = 0.0f;                  // a ray passes its origin by no more, in each coordinate
+    float slack = 0.0f;                  // by so much t_min is lower than it is, and t_far higher
+
+    [[nodiscard]] bool backwards() const { return forward != nullptr; }
+};
+
 // Some of these rays, all in one octant, and the intervals that hold them.
 struct GroupSpace {
     const GroupRays& rays;
+    const GroupCourse course;
     std::array<float, 3> origin_low{}, origin_high{};
     std::array<float, 3> direction_low{}, direction_high{};
     std::array<float, 3> inverse_low{}, inverse_high{};
@@ -136,12 +175,16 @@ struct GroupSpace {
     std::size_t octant = 0;
     std::array<float, 3> slop{};      // boxes are widened by it
     float steepest_direction = 0.0f;  // the largest component
-    float origin_rounding = 0.0f;     // the largest coordinate that origins were rounded from, or 0
+    // The largest coordinate that origins were rounded from, or one whose rounding moves them as
+    // far as they may stray; or 0.
+    float origin_rounding = 0.0f;
+    float forward_rounding = 0.0f;  // the same of the rays as they are, where these go backwards
     bool one_origin = false;
 
     // `relative_slop` is the instance's; `reach` the largest coordinate of what is to be met.
-    GroupSpace(const GroupRays& group, RayMask mask, float relative_slop, float reach)
-        : rays(group) {
+    GroupSpace(const GroupRays& group, RayMask mask, float relative_slop, float reach,
+               const GroupCourse& how = {})
+        : rays(group), course(how) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             measure(rays.origin[axis], mask, origin_low[axis], origin_high[axis]);
             measure(rays.inverse[axis], mask, inverse_low[axis], inverse_high[axis]);
@@ -152,7 +195,9 @@ struct GroupSpace {
             reach = std::max({reach, std::abs(origin_low[axis]), std::abs(origin_high[axis])});
         }
         one_origin = origin_low == origin_high;
-        origin_rounding = relative_slop > 0.0f ? reach : 0.0f;
+        constexpr float kUnit = 0x1p-24f;
+        forward_rounding = relative_slop > 0.0f ? reach : 0.0f;
+        origin_rounding = forward_rounding + course.stray / (6.0f * kUnit);
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const bool negative = inverse_high[axis] < 0.0f;
             first[axis] = negative ? 3 + axis : axis;
@@ -161,8 +206,13 @@ struct GroupSpace {
             const bool flat = inverse_high[axis] >= GroupRays::kSteepest ||
                               inverse_low[axis] <= -GroupRays::kSteepest;
             slop[axis] = std::max(relative_slop, flat ? 0x1p-20f : kDoubleSlop) * reach;
+            // More than what rounding takes away where it is added to an origin or a plane.
+            if (course.backwards()) slop[axis] += course.stray + 4.0f * kUnit * reach;
         }
     }
+
+    // Below every t of interest.
+    [[nodiscard]] float t_least() const { return -2.0f * course.slack; }
 
 private:
     static void measure(const GroupFloats& numbers, RayMask mask, float& low, float& high) {

@@ -42,12 +42,13 @@ public:
 
     // False if this isn't for it.
     HWY_INLINE bool add(std::size_t ray) {
-        const std::uint32_t index = search_.candidate_object[ray];
-        const Object& object = state_.scene->objects[index];
+        const Candidate& candidate = search_.candidate_of(ray);
+        const Instance& instance = state_.instances[candidate.object];
+        const Object& object = state_.scene->objects[candidate.object];
         const auto* set = std::get_if<Set>(&object.shape);
-        if (set == nullptr || state_.instances[index].holes) return false;
-        pairs_.set(count_, object_ray(state_.instances[index], rays_[ray]),
-                   element_of(*state_.scene, *set, search_.candidate_primitive[ray]));
+        if (set == nullptr || instance.holes) return false;
+        pairs_.set(count_, object_ray(instance, rays_[ray]),
+                   element_of(*state_.scene, *set, candidate.primitive));
         lanes_[count_++] = ray;
         mask_ |= RayMask{1} << ray;
         return true;
@@ -93,11 +94,12 @@ private:
 
     bool store(std::size_t lane, double t, const typename Decided::Hits& found, Hit& hit) const {
         const std::size_t ray = lanes_[lane];
-        const Object& object = state_.scene->objects[search_.candidate_object[ray]];
+        const Candidate& candidate = search_.candidate_of(ray);
+        const Object& object = state_.scene->objects[candidate.object];
         const bool front = ((found.front >> lane) & 1) != 0;
         if (!shows(object.sides, front) || !shows(query_.sides, front)) return false;
-        hit = {object.id, search_.candidate_primitive[ray], static_cast<float>(t),
-               glm::vec2(found.uv(lane)), front};
+        hit = {object.id, candidate.primitive, static_cast<float>(t), glm::vec2(found.uv(lane)),
+               front};
         return true;
     }
 
