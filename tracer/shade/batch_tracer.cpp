@@ -128,7 +128,7 @@ void BatchTracer::find_points(const Step& step) {
         intersect_groups(step.job);
         if (step.depth == 1 && hidden == 0) note_first_hits(step.job);
         found_.resize(rays_.size());
-        find_surfaces(step.job.scene, rays_, hits_, found_, triangles_);
+        find_surfaces(step.job.scene, rays_, hits_, found_, surfaces_);
         std::size_t left = 0;
         for (std::size_t i = 0; i < at_work_.size(); ++i) {
             if (!hits_[i].valid()) {

@@ -122,7 +122,7 @@ private:
     std::vector<Ray> rays_;
     std::vector<Hit> hits_;
     std::vector<FoundHit> found_;
-    TriangleSurfaces triangles_;
+    SurfaceBatches surfaces_;
     Crossing crossing_;
     Branches branches_;
     std::vector<RayEnd> points_;  // the first point_count_ are in use

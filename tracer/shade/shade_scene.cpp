@@ -35,7 +35,8 @@ struct KnownPart {
     const PreparedMaterial* prepared = nullptr;
     std::uint32_t first = 0;  // primitives
     std::uint32_t last = 0;
-    bool in_batches = false;  // see TriangleSurfaces
+    bool triangles = false;  // of TriangleSurfaces
+    bool spheres = false;    // of SphereSurfaces
 
     [[nodiscard]] bool holds(const Hit& hit) const {
         return object != nullptr && object->id == hit.object && hit.primitive >= first &&
@@ -64,7 +65,8 @@ KnownPart part_at(const ShadeScene& scene, const Hit& hit) {
         }
     }
     known.prepared = &prepared_material(scene, known.material);
-    known.in_batches = TriangleSurfaces::takes(known.at());
+    known.triangles = TriangleSurfaces::takes(known.at());
+    known.spheres = SphereSurfaces::takes(known.at());
     return known;
 }
 
@@ -101,21 +103,25 @@ FoundHit find_surface(const ShadeScene& scene, const Ray& ray, const Hit& hit) {
 }
 
 void find_surfaces(const ShadeScene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
-                   std::span<FoundHit> found, TriangleSurfaces& triangles) {
-    triangles.clear();
+                   std::span<FoundHit> found, SurfaceBatches& batches) {
+    batches.triangles.clear();
+    batches.spheres.clear();
     KnownPart part;
     for (std::size_t i = 0; i < hits.size(); ++i) {
         if (!hits[i].valid()) continue;
         if (!part.holds(hits[i])) part = part_at(scene, hits[i]);
         found[i].object = part.object;
         found[i].material = part.prepared;
-        if (part.in_batches) {
-            triangles.add(*scene.scene, part.at(), rays[i], hits[i], found[i].surface);
+        if (part.triangles) {
+            batches.triangles.add(*scene.scene, part.at(), rays[i], hits[i], found[i].surface);
+        } else if (part.spheres) {
+            batches.spheres.add(*scene.scene, part.at(), rays[i], hits[i], found[i].surface);
         } else {
             set_surface_point(*scene.scene, part.at(), rays[i], hits[i], found[i].surface);
         }
     }
-    triangles.find(*scene.scene);
+    batches.triangles.find(*scene.scene);
+    batches.spheres.find();
 }
 
 glm::vec3 passed(const ShadeScene& scene, MaterialId medium, float distance) {
