@@ -119,10 +119,7 @@ void BatchTracer::load_rays(const Step& step, std::span<const std::uint32_t> por
 // Follows the rays at work to where they end, through surfaces that are hidden inside of glass of a
 // higher priority, and sends on the next generation.
 void BatchTracer::find_points(const Step& step) {
-    point_count_ = 0;
-    if (points_.size() < at_work_.size()) points_.resize(at_work_.size());
-    materials_.clear();
-    materials_.reserve(kPortion + 1);  // points hold on to them
+    points_.clear();
     for (int hidden = 0; !at_work_.empty(); ++hidden) {
         if (step.job.stop.stop_requested()) return;
         intersect_groups(step.job);
@@ -186,14 +183,10 @@ bool BatchTracer::arrive(const Step& step, int hidden, std::size_t i) {
     }
     if (boundary.crossing != nullptr) step.at.put_inside(path, boundary.crossing->before);
     path.weight *= largest(path.passed);
-    SurfaceMaterial* with_maps = found.material->has_maps ? &materials_.emplace_back() : nullptr;
     const ShadingPoint point =
-        shading_point(scene, found, ray.direction, path.cone.width, with_maps);
-    RayEnd& end = points_[point_count_++];
-    end.ray = at_work_[i];
-    set_lit_point(point, end.point);
+        shading_point(scene, found, ray.direction, path.cone.width, &with_maps_);
+    points_.add(at_work_[i], point, own_light(scene, point));
     if (step.depth == 1) step.job.results[path.parent].normal = point.normal;
-    path.colour = own_light(scene, point);
     if (found.material->branches && step.depth < scene.settings.depth) {
         const ShadingPoint in_memory(point);  // lets `point` stay in registers
         send_branches(step, at_work_[i], in_memory, boundary);
@@ -238,80 +231,67 @@ void BatchTracer::send_branches(const Step& step, std::uint32_t from, const Shad
 // One light after the other, so that rays to the same light travel together.
 void BatchTracer::light_points(const Step& step) {
     const std::vector<PreparedLight>& lights = step.job.scene.lights;
-    for (std::size_t light = 0; light < lights.size() && point_count_ != 0; ++light) {
+    for (std::size_t light = 0; light < lights.size() && points_.size() != 0; ++light) {
         for (int sample = 0; sample < lights[light].count(); ++sample) {
             if (step.job.stop.stop_requested()) return;
             light_points_by(step, light, sample);
         }
     }
-    for (const RayEnd& end : std::span(points_).first(point_count_))
-        step.at.rays[end.ray].colour *= end.point.material->opacity;
+    for (std::size_t i = 0; i < points_.size(); ++i)
+        step.at.rays[points_.ray(i)].colour = points_.colour(i);
 }
 
 void BatchTracer::light_points_by(const Step& step, std::size_t light, int sample) {
-    gather_light(step, light, sample);
-    if (!step.job.scene.settings.shadows) {
-        for (std::size_t i = 0; i < arriving_count_; ++i) {
-            const RayEnd& end = points_[arriving_[i].point];
-            step.at.rays[end.ray].colour += lit_by(end.point, arriving_[i].light, glm::vec3(1.0f));
-        }
-        return;
-    }
-    const bool tinted = step.job.scene.settings.glass_shadows == GlassShadows::tinted;
-    find_shares(step, step.job.scene.lights[light]);
-    std::size_t blocked = 0;
-    for (std::size_t i = 0; i < arriving_count_; ++i) {
-        if (blocked_[i] != 0) {
-            ++blocked;
-            continue;
-        }
-        const RayEnd& end = points_[arriving_[i].point];
-        const glm::vec3 share = tinted ? shares_[i] : glm::vec3(1.0f);
-        step.at.rays[end.ray].colour += lit_by(end.point, arriving_[i].light, share);
-    }
-    step.job.counts.shadow_blocked += blocked;
+    const bool shadows = step.job.scene.settings.shadows;
+    shine(step, light, sample);
+    points_.face_light(shadows);
+    if (shadows) cast_shadows(step, step.job.scene.lights[light]);
+    points_.gather();
 }
 
-// The light that may arrive, and the shadow rays that have to find out.
-void BatchTracer::gather_light(const Step& step, std::size_t light, int sample) {
+void BatchTracer::shine(const Step& step, std::size_t light, int sample) {
     const ShadeScene& scene = step.job.scene;
     const PreparedLight& source = scene.lights[light];
-    const bool shadows = scene.settings.shadows;
-    if (arriving_.size() < point_count_) {
-        arriving_.resize(point_count_);
-        shadow_rays_.resize(point_count_);
+    if (LitPoints::at_once(source)) {
+        points_.shine(source);
+        return;
     }
-    arriving_count_ = 0;
-    for (std::uint32_t i = 0; i < point_count_; ++i) {
-        const LitPoint& point = points_[i].point;
-        const std::uint64_t seed =
-            source.side > 1 ? light_seed(scene, step.at.rays[points_[i].ray].seed, light) : 0;
-        const LightSample light_there = light_sample(source, point.position, sample, seed);
-        if (!faces(point, light_there)) continue;
-        if (shadows && shades_itself(point, light_there)) continue;
-        Arriving& arriving = arriving_[arriving_count_];
-        arriving.point = i;
-        arriving.light.direction = light_there.direction;
-        arriving.light.distance = light_there.distance;
-        arriving.light.colour = light_there.colour;
-        if (shadows) set_shadow_ray(point, light_there, shadow_rays_[arriving_count_]);
-        ++arriving_count_;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+        const std::uint64_t seed = light_seed(scene, step.at.rays[points_.ray(i)].seed, light);
+        points_.shine(i, light_sample(source, points_.position(i), sample, seed));
     }
+}
+
+void BatchTracer::cast_shadows(const Step& step, const PreparedLight& light) {
+    if (shadow_rays_.size() < points_.size()) {
+        shadow_rays_.resize(points_.size());
+        shadowed_.resize(points_.size());
+    }
+    shadow_count_ = points_.take_shadow_rays(shadow_rays_, shadowed_);
+    find_shares(step, light);
+    std::size_t blocked = 0;
+    for (std::size_t i = 0; i < shadow_count_; ++i) {
+        if (blocked_[i] == 0) continue;
+        points_.block(shadowed_[i]);
+        ++blocked;
+    }
+    step.job.counts.shadow_blocked += blocked;
 }
 
 // What arrives of the light along the shadow rays, which all end at it.
 void BatchTracer::find_shares(const Step& step, const PreparedLight& light) {
     const ShadeScene& scene = step.job.scene;
-    const std::span<const Ray> rays = std::span(shadow_rays_).first(arriving_count_);
+    const std::span<const Ray> rays = std::span(shadow_rays_).first(shadow_count_);
     count_shadows(step.job.counts, rays.size(), step.depth);
     blocked_.resize(rays.size());
     if (scene.settings.glass_shadows == GlassShadows::tinted) {
-        shares_.resize(rays.size());
         for (std::size_t i = 0; i < rays.size(); ++i) {
             if (step.job.stop.stop_requested()) return;
-            const PathRay& path = step.at.rays[points_[arriving_[i].point].ray];
-            shares_[i] = transmittance(scene, rays[i], step.at.interior_of(path), path.cone.width);
-            blocked_[i] = shares_[i] == glm::vec3(0.0f) ? 1 : 0;
+            const PathRay& path = step.at.rays[points_.ray(shadowed_[i])];
+            const glm::vec3 share =
+                transmittance(scene, rays[i], step.at.interior_of(path), path.cone.width);
+            blocked_[i] = share == glm::vec3(0.0f) ? 1 : 0;
+            points_.tint(shadowed_[i], share);
         }
         return;
     }

@@ -6,7 +6,7 @@
 #include "tracer/shade/branches.h"
 #include "tracer/shade/eye_ray.h"
 #include "tracer/shade/light_sample.h"
-#include "tracer/shade/lit_point.h"
+#include "tracer/shade/lit_points.h"
 #include "tracer/shade/ray_counts.h"
 #include "tracer/shade/shade_scene.h"
 
@@ -63,20 +63,6 @@ private:
         void put_inside(PathRay& ray, const Interior& interior);
     };
 
-    // The end of a ray.
-    struct RayEnd {
-        std::uint32_t ray = 0;
-        LitPoint point;
-    };
-    // Arrays are filled field by field in place, and keep a length that is enough: copies of what
-    // was just put together make processors wait for the parts.
-
-    // A light's sample on its way to one of points_.
-    struct Arriving {
-        std::uint32_t point = 0;
-        LightSample light;
-    };
-
     // What one call of trace() is about.
     struct Job {
         const ShadeScene& scene;
@@ -107,7 +93,8 @@ private:
                        const Boundary& boundary);
     void light_points(const Step& step);
     void light_points_by(const Step& step, std::size_t light, int sample);
-    void gather_light(const Step& step, std::size_t light, int sample);
+    void shine(const Step& step, std::size_t light, int sample);
+    void cast_shadows(const Step& step, const PreparedLight& light);
     void find_shares(const Step& step, const PreparedLight& light);
 
     std::deque<Generation> generations_;  // by depth - 1
@@ -125,14 +112,13 @@ private:
     SurfaceBatches surfaces_;
     Crossing crossing_;
     Branches branches_;
-    std::vector<RayEnd> points_;  // the first point_count_ are in use
-    std::size_t point_count_ = 0;
-    std::vector<SurfaceMaterial> materials_;  // with maps, of some of the points
-    std::vector<Arriving> arriving_;  // the first arriving_count_ are in use, as of shadow_rays_
+    SurfaceMaterial with_maps_;  // of the ray that arrives
+    LitPoints points_;
+    // As many as there are points at least: the first shadow_count_ are in use.
     std::vector<Ray> shadow_rays_;
-    std::size_t arriving_count_ = 0;
+    std::vector<std::uint32_t> shadowed_;  // the points of these
+    std::size_t shadow_count_ = 0;
     std::vector<std::uint8_t> blocked_;
-    std::vector<glm::vec3> shares_;  // where shadows are tinted
 };
 
 }  // namespace raypick

@@ -38,13 +38,17 @@ inline bool shades_itself(const LitPoint& point, const LightSample& light) {
     return !(glm::dot(point.geometric, light.direction) > 0.0f);
 }
 
-// From the point to the light, but not to a surface that lies in the light itself. For light that
-// the surface does not keep off itself.
+// How far a shadow ray looks: not to a surface that lies in the light itself.
+inline float shadow_reach(float distance) {
+    return distance * static_cast<float>(1.0 - 2.0 * kTieGap);
+}
+
+// From the point to the light, which the surface does not keep off itself.
 inline void set_shadow_ray(const LitPoint& point, const LightSample& light, Ray& ray) {
     ray.origin = point.outside;
     ray.direction = light.direction;
     ray.t_min = 0.0f;
-    ray.t_max = light.distance * static_cast<float>(1.0 - 2.0 * kTieGap);
+    ray.t_max = shadow_reach(light.distance);
 }
 
 // What this share of the light adds to the point's colour.

@@ -1,0 +1,173 @@
+// Many points in the light at once against one by one: the same to the bit, for every instruction
+// set.
+#include "tracer/shade/lit_points.h"
+
+#include "tests/tracer_scenes.h"
+#include "tracer/accel/trace_rays.h"
+#include "tracer/shade/lit_point.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+namespace raypick {
+namespace {
+
+bool same_bits(const glm::vec3& a, const glm::vec3& b) {
+    return std::memcmp(&a, &b, sizeof(a)) == 0;
+}
+
+// Everything that a ShadingPoint refers to.
+struct End {
+    SurfacePoint surface;
+    Material kind;
+    SurfaceMaterial material;
+    glm::vec3 normal{0.0f};
+    glm::vec3 incoming{0.0f};
+    glm::vec3 own{0.0f};
+
+    [[nodiscard]] ShadingPoint point() const {
+        return {surface,
+                kind,
+                material,
+                normal,
+                surface.geometric_normal,
+                incoming,
+                1.001f * surface.position};
+    }
+};
+
+glm::vec3 colour_of(Random& random) {
+    return glm::abs(glm::vec3(random.direction()));
+}
+
+End random_end(std::uint64_t seed) {
+    Random random(seed);
+    End end;
+    end.surface.position = glm::vec3(2.0 * random.direction());
+    end.surface.geometric_normal = glm::vec3(random.direction());
+    end.normal =
+        glm::normalize(end.surface.geometric_normal + 0.5f * glm::vec3(random.direction()));
+    end.incoming = glm::vec3(random.direction());
+    end.own = colour_of(random);
+    end.material.diffuse = colour_of(random);
+    if (seed % 3 != 0) end.material.specular = colour_of(random);
+    end.material.shininess = static_cast<float>(seed % 7) * 5.0f;
+    end.material.opacity = seed % 5 == 0 ? 0.5f : 1.0f;
+    end.material.model = seed % 4 < 2 ? LocalModel::phong : LocalModel::blinn_phong;
+    return end;
+}
+
+std::vector<End> random_ends(std::size_t count) {
+    std::vector<End> ends;
+    for (std::size_t i = 0; i < count; ++i)
+        ends.push_back(random_end(i));
+    if (count > 4) ends[4].surface.position = {1.0f, 2.0f, 3.0f};  // where the lights are
+    return ends;
+}
+
+std::vector<Light> lights() {
+    const glm::dvec3 at(1.0, 2.0, 3.0);
+    const glm::vec3 colour(0.9f, 0.8f, 0.7f);
+    std::vector<Light> all;
+    all.emplace_back(PointLight{"plain", at, colour});
+    all.emplace_back(PointLight{"falls off", at, colour, {1.0, 0.2, 0.1}});
+    all.emplace_back(PointLight{"is weak", at, colour, {3.0, 0.0, 0.0}});
+    all.emplace_back(PointLight{"is black", at, glm::vec3(0.0f)});
+    all.emplace_back(DirectionalLight{"sun", {0.3, -0.9, 0.2}, colour});
+    all.emplace_back(SpotLight{"spot", at, {-0.3, -0.6, -0.8}, colour, {}, 20.0, 40.0});
+    return all;
+}
+
+void shine(const PreparedLight& light, LitPoints& points) {
+    if (LitPoints::at_once(light)) return points.shine(light);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        points.shine(i, light_sample(light, glm::dvec3(points.position(i)), 0, 0));
+}
+
+// What one light adds to one point; every third shadow ray is blocked, every fourth tinted.
+class OneByOne {
+public:
+    explicit OneByOne(bool shadows) : shadows_(shadows) {}
+
+    glm::vec3 added(const End& end, const PreparedLight& light) {
+        const ShadingPoint point = end.point();
+        LitPoint lit;
+        set_lit_point(point, lit);
+        const LightSample sample = light_sample(light, glm::dvec3(lit.position), 0, 0);
+        if (!faces(lit, sample)) return glm::vec3(0.0f);
+        if (!shadows_) return lit_by(lit, sample, glm::vec3(1.0f));
+        if (shades_itself(lit, sample)) return glm::vec3(0.0f);
+        set_shadow_ray(lit, sample, rays.emplace_back());
+        const std::size_t number = rays.size() - 1;
+        if (number % 3 == 0) return glm::vec3(0.0f);
+        return lit_by(lit, sample, number % 4 == 0 ? kTint : glm::vec3(1.0f));
+    }
+
+    static constexpr glm::vec3 kTint{0.3f, 0.6f, 0.9f};
+    std::vector<Ray> rays;
+
+private:
+    bool shadows_;
+};
+
+void expect_same_rays(std::span<const Ray> got, std::span<const Ray> wanted) {
+    ASSERT_EQ(got.size(), wanted.size());
+    for (std::size_t i = 0; i < got.size(); ++i) {
+        EXPECT_TRUE(same_bits(got[i].origin, wanted[i].origin));
+        EXPECT_TRUE(same_bits(got[i].direction, wanted[i].direction));
+        EXPECT_EQ(got[i].t_min, wanted[i].t_min);
+        EXPECT_EQ(got[i].t_max, wanted[i].t_max);
+    }
+}
+
+void compare(LitPoints& points, const std::vector<End>& ends, bool shadows) {
+    std::vector<glm::vec3> wanted;
+    points.clear();
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        points.add(static_cast<std::uint32_t>(3 * i), ends[i].point(), ends[i].own);
+        wanted.push_back(ends[i].own);
+    }
+    std::vector<Ray> rays(ends.size());
+    std::vector<std::uint32_t> of(ends.size());
+    for (const Light& light : lights()) {
+        const PreparedLight source = prepared(light);
+        OneByOne one_by_one(shadows);
+        for (std::size_t i = 0; i < ends.size(); ++i)
+            wanted[i] += one_by_one.added(ends[i], source);
+        shine(source, points);
+        points.face_light(shadows);
+        const std::size_t taken = points.take_shadow_rays(rays, of);
+        if (shadows) expect_same_rays(std::span(rays).first(taken), one_by_one.rays);
+        for (std::size_t i = 0; shadows && i < taken; ++i) {
+            if (i % 3 == 0) points.block(of[i]);
+            if (i % 4 == 0) points.tint(of[i], OneByOne::kTint);
+        }
+        points.gather();
+    }
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        EXPECT_EQ(points.ray(i), 3 * i);
+        EXPECT_TRUE(same_bits(points.colour(i), wanted[i] * ends[i].material.opacity)) << i;
+    }
+}
+
+class LitPointsBy : public testing::TestWithParam<std::string> {
+protected:
+    LitPointsBy() { use_instruction_set(GetParam()); }
+    ~LitPointsBy() override { use_instruction_set(""); }
+};
+
+TEST_P(LitPointsBy, AreThoseOfLitPointToTheBit) {
+    LitPoints points;
+    for (const std::size_t count : {1000u, 0u, 1u, 7u, 16u, 17u}) {
+        SCOPED_TRACE(count);
+        for (const bool shadows : {false, true})
+            compare(points, random_ends(count), shadows);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(InstructionSets, LitPointsBy, testing::ValuesIn(instruction_sets()),
+                         [](const auto& tested) { return tested.param; });
+
+}  // namespace
+}  // namespace raypick

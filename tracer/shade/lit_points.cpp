@@ -1,0 +1,337 @@
+#include "tracer/shade/lit_points.h"
+
+#include "tracer/accel/hit.h"
+#include "tracer/shade/lit_point.h"
+
+#include <bit>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "tracer/shade/lit_points.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace raypick::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+namespace {
+
+using Doubles = hn::CappedTag<double, 8>;
+using Singles = hn::CappedTag<float, LitPoints::kLanes>;
+
+// Operations on triples as glm does them.
+template <class V>
+struct Triple {
+    V x, y, z;
+};
+template <class V>
+HWY_INLINE Triple<V> times(V k, const Triple<V>& a) {
+    return {hn::Mul(k, a.x), hn::Mul(k, a.y), hn::Mul(k, a.z)};
+}
+template <class V>
+HWY_INLINE Triple<V> times(const Triple<V>& a, const Triple<V>& b) {
+    return {hn::Mul(a.x, b.x), hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)};
+}
+template <class V>
+HWY_INLINE Triple<V> plus(const Triple<V>& a, const Triple<V>& b) {
+    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+template <class V>
+HWY_INLINE Triple<V> minus(const Triple<V>& a, const Triple<V>& b) {
+    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+template <class V>
+HWY_INLINE V dot(const Triple<V>& a, const Triple<V>& b) {
+    const Triple<V> each = times(a, b);
+    return hn::Add(hn::Add(each.x, each.y), each.z);
+}
+
+template <class D>
+HWY_INLINE Triple<hn::Vec<D>> same(D d, const glm::vec<3, hn::TFromD<D>>& v) {
+    return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
+}
+
+// A block's rows from lane i on.
+class Lanes {
+public:
+    HWY_INLINE Lanes(LitPoints::Block& block, std::size_t i) : first_(&block.row[i]) {}
+
+    template <class D>
+    HWY_INLINE hn::Vec<D> load(D d, std::size_t row) const {
+        return hn::LoadU(d, first_ + row * LitPoints::kLanes);
+    }
+    template <class D>
+    HWY_INLINE Triple<hn::Vec<D>> load3(D d, std::size_t row) const {
+        return {load(d, row), load(d, row + 1), load(d, row + 2)};
+    }
+    template <class D>
+    HWY_INLINE void store(D d, std::size_t row, hn::Vec<D> v) const {
+        hn::StoreU(v, d, first_ + row * LitPoints::kLanes);
+    }
+    template <class D>
+    HWY_INLINE void store3(D d, std::size_t row, const Triple<hn::Vec<D>>& v) const {
+        store(d, row, v.x);
+        store(d, row + 1, v.y);
+        store(d, row + 2, v.z);
+    }
+
+private:
+    float* first_;
+};
+
+template <class D>
+HWY_INLINE hn::Mask<D> mask_of(D d, std::uint32_t bits) {
+    const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits),
+                                   static_cast<std::uint8_t>(bits >> 8)};
+    return hn::LoadMaskBits(d, bytes);
+}
+template <class D>
+HWY_INLINE std::uint32_t bits_of(D d, hn::Mask<D> mask) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, mask, bytes);
+    return bytes[0] | std::uint32_t{bytes[1]} << 8;
+}
+
+// light_towards, for lights that shine the same everywhere and shares of 1.
+HWY_INLINE void shine_from_point(const PreparedLight& light, const Lanes& lanes) {
+    const Doubles d;
+    const hn::Rebind<float, Doubles> f;
+    const auto number = [d](double x) HWY_ATTR { return hn::Set(d, x); };
+    const auto from = lanes.load3(f, LitPoints::kPosition);
+    const Triple<hn::Vec<Doubles>> offset =
+        minus(same(d, light.position),
+              {hn::PromoteTo(d, from.x), hn::PromoteTo(d, from.y), hn::PromoteTo(d, from.z)});
+    const auto distance = hn::Sqrt(dot(offset, offset));
+    const auto somewhere = hn::Gt(distance, number(0.0));
+    const auto to_light = times(hn::Div(number(1.0), distance), offset);
+    const Attenuation& a = light.attenuation;
+    auto weakening = number(a.constant);
+    if (a.linear != 0.0 || a.quadratic != 0.0) {
+        const auto slope = hn::Add(number(a.linear), hn::Mul(distance, number(a.quadratic)));
+        weakening = hn::Add(weakening, hn::Mul(distance, slope));
+    }
+    const auto colour = times(hn::Div(number(1.0), weakening), same(d, glm::dvec3(light.colour)));
+    const auto rounded = [&](hn::Vec<Doubles> v)
+                             HWY_ATTR { return hn::DemoteTo(f, hn::IfThenElseZero(somewhere, v)); };
+    lanes.store3(f, LitPoints::kToLight,
+                 {rounded(to_light.x), rounded(to_light.y), rounded(to_light.z)});
+    lanes.store(f, LitPoints::kDistance, rounded(distance));
+    lanes.store3(f, LitPoints::kLight, {rounded(colour.x), rounded(colour.y), rounded(colour.z)});
+}
+
+HWY_INLINE std::uint32_t facing(const Lanes& lanes, bool shadows) {
+    const Singles d;
+    const auto zero = hn::Zero(d);
+    const auto to_light = lanes.load3(d, LitPoints::kToLight);
+    const auto light = lanes.load3(d, LitPoints::kLight);
+    auto faces = hn::Gt(dot(lanes.load3(d, LitPoints::kNormal), to_light), zero);
+    faces = hn::And(
+        faces, hn::Or(hn::Or(hn::Ne(light.x, zero), hn::Ne(light.y, zero)), hn::Ne(light.z, zero)));
+    if (shadows) {
+        const auto geometric = lanes.load3(d, LitPoints::kGeometric);
+        faces = hn::And(faces, hn::Gt(dot(geometric, to_light), zero));
+    }
+    return bits_of(d, faces);
+}
+
+// local_light of as many points as a vector holds, with the highlights' powers one by one.
+class LocalLight {
+public:
+    HWY_INLINE LocalLight(const LitPoints::Block& block, const Lanes& lanes, std::size_t i)
+        : lanes_(lanes), lit_(block.lit >> i), shiny_(block.shiny >> i), blinn_(block.blinn >> i) {}
+
+    // Adds it to the points' colours.
+    HWY_INLINE void add() const {
+        const Singles d;
+        const auto normal = lanes_.load3(d, LitPoints::kNormal);
+        const auto to_light = lanes_.load3(d, LitPoints::kToLight);
+        const auto diffuse = dot(normal, to_light);
+        Vector3 local = times(diffuse, lanes_.load3(d, LitPoints::kDiffuse));
+        if ((lit_ & shiny_ & kAll) != 0) {
+            const auto highlight = highlights(lobes(normal, to_light, diffuse));
+            const Vector3 both =
+                plus(local, times(highlight, lanes_.load3(d, LitPoints::kSpecular)));
+            const auto shiny = mask_of(d, shiny_);
+            local = {hn::IfThenElse(shiny, both.x, local.x), hn::IfThenElse(shiny, both.y, local.y),
+                     hn::IfThenElse(shiny, both.z, local.z)};
+        }
+        const auto before = lanes_.load3(d, LitPoints::kColour);
+        const Vector3 after = plus(before, times(lanes_.load3(d, LitPoints::kLight), local));
+        const auto lit = mask_of(d, lit_);
+        lanes_.store3(
+            d, LitPoints::kColour,
+            {hn::IfThenElse(lit, after.x, before.x), hn::IfThenElse(lit, after.y, before.y),
+             hn::IfThenElse(lit, after.z, before.z)});
+    }
+
+private:
+    using Vector = hn::Vec<Singles>;
+    using Vector3 = Triple<Vector>;
+    static constexpr std::uint32_t kAll = (1u << hn::MaxLanes(Singles())) - 1u;
+
+    HWY_INLINE Vector lobes(const Vector3& normal, const Vector3& to_light, Vector diffuse) const {
+        const Singles d;
+        const auto to_eye = lanes_.load3(d, LitPoints::kToEye);
+        const Vector3 mirrored = minus(times(hn::Mul(hn::Set(d, 2.0f), diffuse), normal), to_light);
+        const auto phong = dot(mirrored, to_eye);
+        if ((lit_ & blinn_ & kAll) == 0) return phong;
+        const Vector3 sum = plus(to_light, to_eye);
+        const auto length = hn::Sqrt(dot(sum, sum));
+        const auto lobe =
+            hn::IfThenElseZero(hn::Gt(length, hn::Zero(d)), hn::Div(dot(normal, sum), length));
+        return hn::IfThenElse(mask_of(d, blinn_), lobe, phong);
+    }
+
+    HWY_INLINE Vector highlights(Vector lobe) const {
+        const Singles d;
+        alignas(64) float at[LitPoints::kLanes];
+        alignas(64) float shininess[LitPoints::kLanes];
+        hn::Store(lobe, d, at);
+        hn::Store(lanes_.load(d, LitPoints::kShininess), d, shininess);
+        for (std::uint32_t left = lit_ & shiny_ & kAll; left != 0; left &= left - 1) {
+            const auto k = static_cast<std::size_t>(std::countr_zero(left));
+            at[k] = highlight(at[k], shininess[k]);
+        }
+        return hn::Load(d, at);
+    }
+
+    const Lanes& lanes_;
+    std::uint32_t lit_;
+    std::uint32_t shiny_;
+    std::uint32_t blinn_;
+};
+
+}  // namespace
+
+void shine_from_point(const PreparedLight& light, std::span<LitPoints::Block> blocks) {
+    for (LitPoints::Block& block : blocks) {
+        for (std::size_t i = 0; i < LitPoints::kLanes; i += hn::Lanes(Doubles()))
+            shine_from_point(light, Lanes(block, i));
+    }
+}
+
+void face_light(std::span<LitPoints::Block> blocks, bool shadows) {
+    for (LitPoints::Block& block : blocks) {
+        block.lit = 0;
+        for (std::size_t i = 0; i < LitPoints::kLanes; i += hn::Lanes(Singles()))
+            block.lit |= facing(Lanes(block, i), shadows) << i;
+    }
+}
+
+void gather_light(std::span<LitPoints::Block> blocks) {
+    for (LitPoints::Block& block : blocks) {
+        if (block.lit == 0) continue;
+        for (std::size_t i = 0; i < LitPoints::kLanes; i += hn::Lanes(Singles()))
+            LocalLight(block, Lanes(block, i), i).add();
+    }
+}
+
+}  // namespace raypick::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace raypick {
+
+HWY_EXPORT(shine_from_point);
+HWY_EXPORT(face_light);
+HWY_EXPORT(gather_light);
+
+namespace {
+
+void put(LitPoints::Block& block, std::size_t lane, std::size_t row, const glm::vec3& v) {
+    float* const to = &block.row[row * LitPoints::kLanes + lane];
+    to[0] = v.x;
+    to[LitPoints::kLanes] = v.y;
+    to[2 * LitPoints::kLanes] = v.z;
+}
+
+void put(LitPoints::Block& block, std::size_t lane, const LightSample& light) {
+    put(block, lane, LitPoints::kToLight, light.direction);
+    block.row[LitPoints::kDistance * LitPoints::kLanes + lane] = light.distance;
+    put(block, lane, LitPoints::kLight, light.colour);
+}
+
+}  // namespace
+
+void LitPoints::add(std::uint32_t ray, const ShadingPoint& point, const glm::vec3& own) {
+    if (count_ == kLanes * blocks_.size()) blocks_.resize(2 * blocks_.size() + 1);
+    Block& block = blocks_[count_ / kLanes];
+    const std::size_t lane = count_ % kLanes;
+    ++count_;
+    if (lane == 0) block.shiny = block.blinn = 0;
+    LitPoint lit;
+    set_lit_point(point, lit);
+    put(block, lane, kPosition, lit.position);
+    put(block, lane, kOutside, lit.outside);
+    put(block, lane, kNormal, lit.normal);
+    put(block, lane, kGeometric, lit.geometric);
+    put(block, lane, kToEye, lit.to_eye);
+    const SurfaceMaterial& material = *lit.material;
+    put(block, lane, kDiffuse, material.diffuse);
+    put(block, lane, kSpecular, material.specular);
+    block.row[kShininess * kLanes + lane] = material.shininess;
+    put(block, lane, kColour, own);
+    block.ray[lane] = ray;
+    block.opacity[lane] = material.opacity;
+    const auto bit = [lane](bool is) { return std::uint32_t{is} << lane; };
+    block.shiny |= bit(material.specular != glm::vec3(0.0f));
+    block.blinn |= bit(material.model != LocalModel::phong);
+}
+
+void LitPoints::shine(const PreparedLight& light) {
+    if (light.kind == PreparedLight::Kind::point) {
+        HWY_DYNAMIC_DISPATCH(shine_from_point)(light, used());
+        return;
+    }
+    for (Block& block : used()) {
+        for (std::size_t lane = 0; lane < kLanes; ++lane)
+            put(block, lane, light_sample(light, glm::dvec3(0.0), 0, 0));
+    }
+}
+
+void LitPoints::shine(std::size_t i, const LightSample& light) {
+    put(blocks_[i / kLanes], i % kLanes, light);
+}
+
+void LitPoints::face_light(bool shadows) {
+    HWY_DYNAMIC_DISPATCH(face_light)(used(), shadows);
+    if (count_ % kLanes != 0) used().back().lit &= (1u << (count_ % kLanes)) - 1u;
+}
+
+std::size_t LitPoints::take_shadow_rays(std::span<Ray> rays,
+                                        std::span<std::uint32_t> points) const {
+    std::size_t taken = 0;
+    std::uint32_t first = 0;
+    for (const Block& block : used()) {
+        for (std::uint32_t left = block.lit; left != 0; left &= left - 1) {
+            const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+            const float* const row = &block.row[lane];
+            Ray& ray = rays[taken];
+            for (int k = 0; k < 3; ++k) {
+                const auto axis = static_cast<std::size_t>(k);
+                ray.origin[k] = row[(kOutside + axis) * kLanes];
+                ray.direction[k] = row[(kToLight + axis) * kLanes];
+            }
+            ray.t_min = 0.0f;
+            ray.t_max = shadow_reach(row[kDistance * kLanes]);
+            points[taken++] = first + lane;
+        }
+        first += kLanes;
+    }
+    return taken;
+}
+
+void LitPoints::tint(std::size_t i, const glm::vec3& share) {
+    put(blocks_[i / kLanes], i % kLanes, kLight, share * at(i, kLight));
+}
+
+void LitPoints::gather() {
+    HWY_DYNAMIC_DISPATCH(gather_light)(used());
+}
+
+}  // namespace raypick
+
+#endif  // HWY_ONCE

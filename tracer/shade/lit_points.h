@@ -1,0 +1,101 @@
+// Ends of rays with the light that falls on them, many at once.
+#pragma once
+
+#include "tracer/geometry/ray.h"
+#include "tracer/shade/boundary.h"
+#include "tracer/shade/light_sample.h"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace raypick {
+
+// What lit_point.h says of one point and one light, to the bit, as vectors of whatever width the
+// processor has. Keeps its memory. Per light: shine() on all points, take_shadow_rays() if it casts
+// shadows, block() or tint() those in its way, gather().
+class LitPoints {
+public:
+    void clear() { count_ = 0; }
+    [[nodiscard]] std::size_t size() const { return count_; }
+    // The end of this ray; `own`: what the surface gives off by itself.
+    void add(std::uint32_t ray, const ShadingPoint& point, const glm::vec3& own);
+
+    [[nodiscard]] std::uint32_t ray(std::size_t i) const {
+        return blocks_[i / kLanes].ray[i % kLanes];
+    }
+    [[nodiscard]] glm::vec3 position(std::size_t i) const { return at(i, kPosition); }
+
+    // True for lights that shine on all points at once; others shine on one after the other.
+    [[nodiscard]] static bool at_once(const PreparedLight& light) {
+        return light.kind == PreparedLight::Kind::point ||
+               light.kind == PreparedLight::Kind::directional;
+    }
+    void shine(const PreparedLight& light);
+    void shine(std::size_t i, const LightSample& light);
+    // Leaves out the points that the light doesn't reach, with shadows also those that keep it off
+    // themselves. To be called once it shines on all.
+    void face_light(bool shadows);
+
+    // Towards the light from where it may arrive, points[k] being the point of rays[k]; both are as
+    // long as there are points at least. Returns how many.
+    std::size_t take_shadow_rays(std::span<Ray> rays, std::span<std::uint32_t> points) const;
+    void block(std::size_t i) { blocks_[i / kLanes].lit &= ~(1u << (i % kLanes)); }
+    void tint(std::size_t i, const glm::vec3& share);
+    // Adds the light to the points that it reaches.
+    void gather();
+
+    // All that leaves the point by itself and by the lights.
+    [[nodiscard]] glm::vec3 colour(std::size_t i) const {
+        return at(i, kColour) * blocks_[i / kLanes].opacity[i % kLanes];
+    }
+
+    // One float of each point is in each of these rows: of a LitPoint and its material,
+    static constexpr std::size_t kPosition = 0;
+    static constexpr std::size_t kOutside = 3;
+    static constexpr std::size_t kNormal = 6;
+    static constexpr std::size_t kGeometric = 9;
+    static constexpr std::size_t kToEye = 12;
+    static constexpr std::size_t kDiffuse = 15;
+    static constexpr std::size_t kSpecular = 18;
+    static constexpr std::size_t kShininess = 21;
+    // its colour so far,
+    static constexpr std::size_t kColour = 22;
+    // and of the light that shines.
+    static constexpr std::size_t kToLight = 25;
+    static constexpr std::size_t kDistance = 28;
+    static constexpr std::size_t kLight = 29;
+    static constexpr std::size_t kRows = 32;
+    // Some points side by side.
+    static constexpr std::size_t kLanes = 16;
+    struct Block {
+        alignas(64) std::array<float, kRows * kLanes> row{};
+        std::array<std::uint32_t, kLanes> ray{};
+        std::array<float, kLanes> opacity{};
+        // Bits by point.
+        std::uint32_t lit = 0;
+        std::uint32_t shiny = 0;  // with a highlight
+        std::uint32_t blinn = 0;  // by Blinn's model
+    };
+
+private:
+    [[nodiscard]] glm::vec3 at(std::size_t i, std::size_t first) const {
+        const float* const row = &blocks_[i / kLanes].row[first * kLanes + i % kLanes];
+        return {row[0], row[kLanes], row[2 * kLanes]};
+    }
+    [[nodiscard]] std::span<Block> used() {
+        return std::span(blocks_).first((count_ + kLanes - 1) / kLanes);
+    }
+    [[nodiscard]] std::span<const Block> used() const {
+        return std::span(blocks_).first((count_ + kLanes - 1) / kLanes);
+    }
+
+    std::size_t count_ = 0;
+    std::vector<Block> blocks_;
+};
+
+}  // namespace raypick
