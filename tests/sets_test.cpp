@@ -101,6 +101,24 @@ TEST(EveryShape, EqualsBruteForce) {
     }
 }
 
+// Hits whose uv nobody wants are the same in all else, one by one and in groups.
+TEST(EveryShape, HitsWithoutUvAreTheSame) {
+    const Accel accel = accel_of(every_shape(5, 1.0));
+    const std::vector<Ray> rays = rays_through(accel.bounds(), 5, 1500);
+    RayQuery without;
+    without.uv = false;
+    std::vector<Hit> wanted(rays.size());
+    std::vector<Hit> got(rays.size());
+    accel.intersect(rays, wanted);
+    accel.intersect(rays, got, without);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        Hit one = accel.intersect(rays[i], without).value_or(Hit{});
+        one.uv = got[i].uv = wanted[i].uv;
+        ASSERT_EQ(got[i], wanted[i]) << to_text(rays[i]);
+        ASSERT_EQ(one, wanted[i]) << to_text(rays[i]);
+    }
+}
+
 TEST(EveryShape, SidesOfObjectsEqualBruteForce) {
     for (const Sides sides : {Sides::front_only, Sides::back_only}) {
         Scene scene = every_shape(7, 1.0);

@@ -61,6 +61,9 @@ struct RayQuery {
     Sides sides = Sides::both;  // on top of the objects' own
     std::span<const ClipPlane> clip_planes;
     AcceptHit accept;
+    // False: nobody looks at the uv of what is hit, and of other shapes than triangles, where it
+    // takes arc tangents, it may be left 0.
+    bool uv = true;
 };
 
 }  // namespace raypick

@@ -122,7 +122,7 @@ void BatchTracer::find_points(const Step& step) {
     points_.clear();
     for (int hidden = 0; !at_work_.empty(); ++hidden) {
         if (step.job.stop.stop_requested()) return;
-        intersect_groups(step.job);
+        intersect_groups(step);
         if (step.depth == 1 && hidden == 0) note_first_hits(step.job);
         found_.resize(rays_.size());
         find_surfaces(step.job.scene, rays_, hits_, found_, surfaces_);
@@ -144,14 +144,17 @@ void BatchTracer::find_points(const Step& step) {
 }
 
 // One query for each group of rays that go the same way.
-void BatchTracer::intersect_groups(const Job& job) {
+void BatchTracer::intersect_groups(const Step& step) {
+    const ShadeScene& scene = step.job.scene;
+    RayQuery query;
+    query.uv = scene.has_maps || step.depth == 1;  // eye rays' hits are among the results
     hits_.resize(rays_.size());
     for (std::size_t first = 0; first < rays_.size();) {
         std::size_t end = first + 1;
         while (end < rays_.size() && directions_[end] == directions_[first])
             ++end;
-        job.scene.accel->intersect(std::span(rays_).subspan(first, end - first),
-                                   std::span(hits_).subspan(first, end - first));
+        scene.accel->intersect(std::span(rays_).subspan(first, end - first),
+                               std::span(hits_).subspan(first, end - first), query);
         first = end;
     }
 }

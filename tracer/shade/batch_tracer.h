@@ -85,7 +85,7 @@ private:
     void follow_portion(const Step& step, std::span<const std::uint32_t> portion);
     void find_points(const Step& step);
     void load_rays(const Step& step, std::span<const std::uint32_t> portion);
-    void intersect_groups(const Job& job);
+    void intersect_groups(const Step& step);
     void note_first_hits(const Job& job);
     bool arrive(const Step& step, int hidden, std::size_t i);
     static void see_sky(const Step& step, PathRay& path, const Ray& ray);

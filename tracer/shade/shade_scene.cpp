@@ -87,6 +87,7 @@ ShadeScene shade_scene(const Accel& accel, std::span<const Light> lights,
     result.materials.reserve(materials.size() + 1);
     for (const Material& material : materials) {
         result.materials.push_back(prepared(material, settings));
+        if (result.materials.back().has_maps) result.has_maps = true;
         if (settings.refractions && result.materials.back().fills) result.has_bodies = true;
     }
     result.materials.push_back(prepared(material(accel.scene(), kNoMaterial), settings));

@@ -32,6 +32,7 @@ struct ShadeScene {
     RenderSettings settings;
     std::vector<PreparedLight> lights;
     std::vector<PreparedMaterial> materials;  // by id; the last one is that of no id
+    bool has_maps = false;                    // some of the materials do
     bool has_bodies = false;                  // rays may be inside of something
     bool draws_lots = false;                  // points on lights are random
     bool plain_sky = false;                   // the background is all that is around
