@@ -6,48 +6,52 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace raypick {
 
 namespace {
 
-// Mirror direction about the shading normal; about the geometric one where the former would lead
-// into the surface.
-glm::vec3 reflect_direction(const ShadingPoint& point) {
-    const auto about = [&](const glm::vec3& n) {
-        return glm::normalize(point.incoming - 2.0f * glm::dot(point.incoming, n) * n);
-    };
-    const glm::vec3 mirrored = about(point.normal);
-    return glm::dot(mirrored, point.geometric) > 0.0f ? mirrored : about(point.geometric);
+// Directions and shares are put by their numbers where they are wanted: a copy of a vector that was
+// just put together makes processors wait for its parts.
+void put(const glm::vec3& from, glm::vec3& to) {
+    to.x = from.x;
+    to.y = from.y;
+    to.z = from.z;
 }
 
-// Snell's law at a normal on the ray's side; nothing on total internal reflection. `eta` is the
-// index before over the index beyond.
-std::optional<glm::vec3> refract(const glm::vec3& incoming, const glm::vec3& normal, float eta) {
+// Mirror direction about the shading normal; about the geometric one where the former would lead
+// into the surface.
+void reflect_direction(const ShadingPoint& point, glm::vec3& mirrored) {
+    const auto about = [&](const glm::vec3& n) {
+        put(glm::normalize(point.incoming - 2.0f * glm::dot(point.incoming, n) * n), mirrored);
+    };
+    about(point.normal);
+    if (!(glm::dot(mirrored, point.geometric) > 0.0f)) about(point.geometric);
+}
+
+// Snell's law at a normal on the ray's side; false on total internal reflection. `eta` is the index
+// before over the index beyond.
+bool refract(const glm::vec3& incoming, const glm::vec3& normal, float eta, glm::vec3& refracted) {
     const float cosine = -glm::dot(incoming, normal);
     const float squared = 1.0f - eta * eta * (1.0f - cosine * cosine);
-    if (!(squared >= 0.0f)) return std::nullopt;
-    return glm::normalize(eta * incoming + (eta * cosine - std::sqrt(squared)) * normal);
+    if (!(squared >= 0.0f)) return false;
+    put(glm::normalize(eta * incoming + (eta * cosine - std::sqrt(squared)) * normal), refracted);
+    return true;
 }
 
 // About the shading normal; about the geometric one where the former faces away or leads the ray
 // back.
-std::optional<glm::vec3> refract_direction(const ShadingPoint& point, float eta) {
-    if (eta == 1.0f) return point.incoming;
-    if (glm::dot(point.incoming, point.normal) < 0.0f) {
-        const auto refracted = refract(point.incoming, point.normal, eta);
-        if (!refracted || glm::dot(*refracted, point.geometric) < 0.0f) return refracted;
+bool refract_direction(const ShadingPoint& point, float eta, glm::vec3& refracted) {
+    if (eta == 1.0f) {
+        put(point.incoming, refracted);
+        return true;
     }
-    return refract(point.incoming, point.geometric, eta);
+    if (glm::dot(point.incoming, point.normal) < 0.0f) {
+        if (!refract(point.incoming, point.normal, eta, refracted)) return false;
+        if (glm::dot(refracted, point.geometric) < 0.0f) return true;
+    }
+    return refract(point.incoming, point.geometric, eta, refracted);
 }
-
-// What leaves a surface: shares of a mirrored and of a transmitted ray.
-struct Split {
-    glm::vec3 mirrored{0.0f};
-    glm::vec3 transmitted{0.0f};
-    std::optional<glm::vec3> through;  // direction of the transmitted ray
-};
 
 // Of a dielectric that nothing enters: a coat of varnish.
 float fresnel_outside(const ShadingPoint& point, float cosine) {
@@ -55,35 +59,12 @@ float fresnel_outside(const ShadingPoint& point, float cosine) {
     return fresnel_dielectric(cosine, point.surface.front_face ? 1.0f / ior : ior);
 }
 
-void apply_fresnel(const ShadingPoint& point, const Boundary& boundary, Split& split) {
+// What a dielectric reflects.
+float reflected(const ShadingPoint& point, const Boundary& boundary, float cosine) {
     const Material& kind = point.kind;
-    const float cosine = std::clamp(-glm::dot(point.incoming, point.normal), 0.0f, 1.0f);
-    if (kind.reflectance == Reflectance::dielectric) {
-        const float f = kind.thin_walled               ? fresnel_sheet(cosine, 1.0f / kind.ior)
-                        : boundary.crossing != nullptr ? fresnel_dielectric(cosine, boundary.eta)
-                                                       : fresnel_outside(point, cosine);
-        split.mirrored *= f;
-        if (split.through) split.transmitted *= 1.0f - f;
-    } else if (split.mirrored != glm::vec3(0.0f)) {
-        split.mirrored = fresnel_conductor(split.mirrored, cosine);
-    }
-}
-
-Split split_at(const RenderSettings& settings, const ShadingPoint& point,
-               const Boundary& boundary) {
-    Split split;
-    const bool refracts = settings.refractions && point.kind.transmits();
-    if (refracts) {
-        split.through = refract_direction(point, boundary.eta);
-        split.transmitted = point.material.transmit;
-    }
-    if (settings.reflections) split.mirrored = point.material.reflect;
-    const bool constant = point.kind.reflectance == Reflectance::constant;
-    if (!constant) apply_fresnel(point, boundary, split);
-    if (refracts && !split.through) {  // total internal reflection
-        if (constant || !settings.reflections) split.mirrored += split.transmitted;
-    }
-    return split;
+    if (kind.thin_walled) return fresnel_sheet(cosine, 1.0f / kind.ior);
+    if (boundary.crossing != nullptr) return fresnel_dielectric(cosine, boundary.eta);
+    return fresnel_outside(point, cosine);
 }
 
 // Collects what is worth a ray.
@@ -94,16 +75,15 @@ public:
         found_.count = 0;
     }
 
-    // `direction` is asked only for a ray that is shot.
-    template <typename Direction>
-    void add(BranchKind kind, const glm::vec3& share, const Direction& direction) {
+    // The ray's direction is to be set; nullptr: none is shot.
+    Branch* add(BranchKind kind, const glm::vec3& share) {
         const float weight = weight_ * largest(share);
-        if (cutoff_ != 0.0f && !(weight > cutoff_)) return;
+        if (cutoff_ != 0.0f && !(weight > cutoff_)) return nullptr;
         Branch& branch = found_.branch[found_.count++];
         branch.kind = kind;
-        branch.direction = direction();
-        branch.share = share;
+        put(share, branch.share);
         branch.weight = weight;
+        return &branch;
     }
 
 private:
@@ -112,6 +92,41 @@ private:
     Branches& found_;
 };
 
+// What a surface that mirrors or lets light through sends on.
+void add_split(const RenderSettings& settings, const ShadingPoint& point, const Boundary& boundary,
+               Collector& collector) {
+    const Material& kind = point.kind;
+    const SurfaceMaterial& material = point.material;
+    const bool refracts = settings.refractions && kind.transmits();
+    glm::vec3 through;
+    const bool passes = refracts && refract_direction(point, boundary.eta, through);
+    const bool constant = kind.reflectance == Reflectance::constant;
+    glm::vec3 mirrored = settings.reflections ? material.reflect : glm::vec3(0.0f);
+    glm::vec3 transmitted = material.transmit;
+    if (!constant) {
+        const float cosine = std::clamp(-glm::dot(point.incoming, point.normal), 0.0f, 1.0f);
+        if (kind.reflectance == Reflectance::dielectric) {
+            const float f = reflected(point, boundary, cosine);
+            mirrored *= f;
+            if (passes) transmitted *= 1.0f - f;
+        } else if (mirrored != glm::vec3(0.0f)) {
+            mirrored = fresnel_conductor(mirrored, cosine);
+        }
+    }
+    // Total internal reflection.
+    if (refracts && !passes && (constant || !settings.reflections)) mirrored += transmitted;
+    const float opacity = material.opacity;
+    if (passes) {
+        Branch* branch = collector.add(BranchKind::transmitted, opacity * transmitted);
+        if (branch != nullptr) put(through, branch->direction);
+    }
+    const bool mirrors = settings.reflections && (kind.reflects() || kind.transmits());
+    if (mirrors || mirrored != glm::vec3(0.0f)) {
+        Branch* branch = collector.add(BranchKind::mirrored, opacity * mirrored);
+        if (branch != nullptr) reflect_direction(point, branch->direction);
+    }
+}
+
 }  // namespace
 
 void find_branches(const ShadeScene& scene, const ShadingPoint& point, const Boundary& boundary,
@@ -119,23 +134,14 @@ void find_branches(const ShadeScene& scene, const ShadingPoint& point, const Bou
     const RenderSettings& settings = scene.settings;
     const float opacity = point.material.opacity;
     const Material& kind = point.kind;
-    const bool transmits = settings.refractions && kind.transmits();
-    const bool mirrors = settings.reflections && (kind.reflects() || kind.transmits());
     Collector collector(settings.cutoff, weight, found);
-    if (transmits || mirrors) {
-        const Split split = split_at(settings, point, boundary);
-        if (transmits && split.through) {
-            collector.add(BranchKind::transmitted, opacity * split.transmitted,
-                          [&] { return *split.through; });
-        }
-        if (mirrors || split.mirrored != glm::vec3(0.0f)) {
-            collector.add(BranchKind::mirrored, opacity * split.mirrored,
-                          [&] { return reflect_direction(point); });
-        }
+    if ((settings.refractions && kind.transmits()) ||
+        (settings.reflections && (kind.reflects() || kind.transmits()))) {
+        add_split(settings, point, boundary, collector);
     }
     if (opacity < 1.0f && settings.refractions) {
-        collector.add(BranchKind::straight, glm::vec3(1.0f - opacity),
-                      [&] { return point.incoming; });
+        Branch* branch = collector.add(BranchKind::straight, glm::vec3(1.0f - opacity));
+        if (branch != nullptr) put(point.incoming, branch->direction);
     }
 }
 
