@@ -147,7 +147,7 @@ void BatchTracer::find_points(const Step& step) {
 void BatchTracer::intersect_groups(const Step& step) {
     const ShadeScene& scene = step.job.scene;
     RayQuery query;
-    query.uv = scene.has_maps || step.depth == 1;  // eye rays' hits are among the results
+    query.uv = scene.has_maps;
     hits_.resize(rays_.size());
     for (std::size_t first = 0; first < rays_.size();) {
         std::size_t end = first + 1;

@@ -20,7 +20,7 @@ struct EyeRay {
 // One traced eye ray: the colour and, for the frame's other channels, what was hit first.
 struct TracedRay {
     glm::vec3 colour{0.0f};  // linear RGB
-    Hit hit;                 // invalid: background
+    Hit hit;                 // invalid: background; uv may be 0 where no material has maps
     glm::vec3 normal{0.0f};  // shading normal towards the eye, scene space; 0 on a miss
 };
 
