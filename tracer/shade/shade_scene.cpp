@@ -36,7 +36,7 @@ struct KnownPart {
     std::uint32_t first = 0;  // primitives
     std::uint32_t last = 0;
     bool triangles = false;  // of TriangleSurfaces
-    bool spheres = false;    // of SphereSurfaces
+    ShapeSurfaces::Kind shape = ShapeSurfaces::Kind::other;
 
     [[nodiscard]] bool holds(const Hit& hit) const {
         return object != nullptr && object->id == hit.object && hit.primitive >= first &&
@@ -66,7 +66,7 @@ KnownPart part_at(const ShadeScene& scene, const Hit& hit) {
     }
     known.prepared = &prepared_material(scene, known.material);
     known.triangles = TriangleSurfaces::takes(known.at());
-    known.spheres = SphereSurfaces::takes(known.at());
+    known.shape = ShapeSurfaces::kind(known.at());
     return known;
 }
 
@@ -106,7 +106,7 @@ FoundHit find_surface(const ShadeScene& scene, const Ray& ray, const Hit& hit) {
 void find_surfaces(const ShadeScene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
                    std::span<FoundHit> found, SurfaceBatches& batches) {
     batches.triangles.clear();
-    batches.spheres.clear();
+    batches.shapes.clear();
     KnownPart part;
     for (std::size_t i = 0; i < hits.size(); ++i) {
         if (!hits[i].valid()) continue;
@@ -115,14 +115,15 @@ void find_surfaces(const ShadeScene& scene, std::span<const Ray> rays, std::span
         found[i].material = part.prepared;
         if (part.triangles) {
             batches.triangles.add(*scene.scene, part.at(), rays[i], hits[i], found[i].surface);
-        } else if (part.spheres) {
-            batches.spheres.add(*scene.scene, part.at(), rays[i], hits[i], found[i].surface);
+        } else if (part.shape != ShapeSurfaces::Kind::other) {
+            batches.shapes.add(part.shape, *scene.scene, part.at(), rays[i], hits[i],
+                               found[i].surface);
         } else {
             set_surface_point(*scene.scene, part.at(), rays[i], hits[i], found[i].surface);
         }
     }
     batches.triangles.find(*scene.scene);
-    batches.spheres.find();
+    batches.shapes.find();
 }
 
 glm::vec3 passed(const ShadeScene& scene, MaterialId medium, float distance) {

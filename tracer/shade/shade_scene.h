@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tracer/accel/accel.h"
-#include "tracer/accel/sphere_surfaces.h"
+#include "tracer/accel/shape_surfaces.h"
 #include "tracer/accel/surface.h"
 #include "tracer/accel/triangle_surfaces.h"
 #include "tracer/shade/light_sample.h"
@@ -56,7 +56,7 @@ FoundHit find_surface(const ShadeScene& scene, const Ray& ray, const Hit& hit);
 // Surfaces of shapes of which many are worked out together.
 struct SurfaceBatches {
     TriangleSurfaces triangles;
-    SphereSurfaces spheres;
+    ShapeSurfaces shapes;
 };
 // The same of each ray that hit something; others leave found[i] as it is. As long as the rays.
 void find_surfaces(const ShadeScene& scene, std::span<const Ray> rays, std::span<const Hit> hits,

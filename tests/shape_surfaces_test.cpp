@@ -1,5 +1,5 @@
 // Many at once against one by one: the same to the bit, for every instruction set.
-#include "tracer/accel/sphere_surfaces.h"
+#include "tracer/accel/shape_surfaces.h"
 
 #include "tests/tracer_scenes.h"
 #include "tracer/accel/trace_rays.h"
@@ -25,8 +25,9 @@ void expect_same(const SurfacePoint& got, const SurfacePoint& wanted) {
     EXPECT_EQ(got.material, wanted.material);
 }
 
-// A set and single ones, some inside of others, all far from the origin with `away`.
-Scene spheres(double scale, const glm::dvec3& away) {
+// A set of spheres and single ones, some inside of others, and rectangles, some of them smaller
+// than their rims where `away` takes all far from the origin.
+Scene shapes(double scale, const glm::dvec3& away) {
     Scene scene;
     Random random(3);
     std::vector<glm::vec4> set;
@@ -37,11 +38,16 @@ Scene spheres(double scale, const glm::dvec3& away) {
     place(scene, SphereSetInstance{add_sphere_set(scene, make_sphere_set("set", std::move(set)))});
     for (int i = 0; i < 6; ++i)
         place(scene, Sphere{away + scale * 2.5 * random.direction(), scale * 0.3});
+    for (int i = 0; i < 20; ++i) {
+        const double side = scale * (i % 2 == 0 ? 2.0 : 0.3);
+        place(scene, Rectangle{away + scale * 2.0 * random.direction(), side * random.direction(),
+                               0.5 * side * random.direction()});
+    }
     return scene;
 }
 
 // Works out what `count` rays hit, and returns how many hits there were.
-std::size_t compare(const Accel& accel, SphereSurfaces& surfaces, std::size_t count) {
+std::size_t compare(const Accel& accel, ShapeSurfaces& surfaces, std::size_t count) {
     const Scene& scene = accel.scene();
     const std::vector<Ray> rays = rays_through(accel.bounds(), 7, count);
     std::vector<Hit> hits(rays.size());
@@ -54,8 +60,9 @@ std::size_t compare(const Accel& accel, SphereSurfaces& surfaces, std::size_t co
         const std::size_t index = object_index(scene, hits[i].object);
         const HitObject at{scene.objects[index], accel.object_from_world(index), kNoMaterial,
                            false};
-        EXPECT_TRUE(SphereSurfaces::takes(at));
-        surfaces.add(scene, at, rays[i], hits[i], got[i]);
+        const ShapeSurfaces::Kind kind = ShapeSurfaces::kind(at);
+        EXPECT_NE(kind, ShapeSurfaces::Kind::other);
+        surfaces.add(kind, scene, at, rays[i], hits[i], got[i]);
         ++met;
     }
     surfaces.find();
@@ -65,17 +72,17 @@ std::size_t compare(const Accel& accel, SphereSurfaces& surfaces, std::size_t co
     return met;
 }
 
-class SphereSurfacesBy : public testing::TestWithParam<std::string> {
+class ShapeSurfacesBy : public testing::TestWithParam<std::string> {
 protected:
-    SphereSurfacesBy() { use_instruction_set(GetParam()); }
-    ~SphereSurfacesBy() override { use_instruction_set(""); }
+    ShapeSurfacesBy() { use_instruction_set(GetParam()); }
+    ~ShapeSurfacesBy() override { use_instruction_set(""); }
 };
 
-TEST_P(SphereSurfacesBy, AreThoseOfSurfacePointToTheBit) {
-    SphereSurfaces surfaces;
+TEST_P(ShapeSurfacesBy, AreThoseOfSurfacePointToTheBit) {
+    ShapeSurfaces surfaces;
     for (const double scale : {1e-4, 1.0, 1e5}) {
         for (const glm::dvec3& away : {glm::dvec3(0.0), scale * glm::dvec3(3e4, -2e4, 1e4)}) {
-            const Accel accel = accel_of(spheres(scale, away));
+            const Accel accel = accel_of(shapes(scale, away));
             EXPECT_GT(compare(accel, surfaces, 4000), 1500u);
             for (const std::size_t count : {0u, 1u, 2u, 3u, 7u, 17u})
                 compare(accel, surfaces, count);
@@ -83,20 +90,27 @@ TEST_P(SphereSurfacesBy, AreThoseOfSurfacePointToTheBit) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, SphereSurfacesBy, testing::ValuesIn(instruction_sets()),
+INSTANTIATE_TEST_SUITE_P(InstructionSets, ShapeSurfacesBy, testing::ValuesIn(instruction_sets()),
                          [](const auto& tested) { return tested.param; });
 
-TEST(SphereSurfaces, TakesWhatNothingMovesAndNoTextureNeeds) {
+TEST(ShapeSurfaces, TakesWhatNothingMovesAndNoTextureNeeds) {
     Scene scene;
     place(scene, Sphere{});
     place(scene, Sphere{}, kNoMaterial, translate({1, 0, 0}));
     place_mesh(scene, ball_data(0));
+    place(scene, Rectangle{});
     const Transform identity;
     const Transform moved = translate({-1, 0, 0});
-    EXPECT_TRUE(SphereSurfaces::takes({scene.objects[0], identity, kNoMaterial, false}));
-    EXPECT_FALSE(SphereSurfaces::takes({scene.objects[0], identity, kNoMaterial, true}));
-    EXPECT_FALSE(SphereSurfaces::takes({scene.objects[1], moved, kNoMaterial, false}));
-    EXPECT_FALSE(SphereSurfaces::takes({scene.objects[2], identity, kNoMaterial, false}));
+    using Kind = ShapeSurfaces::Kind;
+    const auto kind = [&](std::size_t object, const Transform& placed, bool textured) {
+        return ShapeSurfaces::kind({scene.objects[object], placed, kNoMaterial, textured});
+    };
+    EXPECT_EQ(kind(0, identity, false), Kind::sphere);
+    EXPECT_EQ(kind(0, identity, true), Kind::other);
+    EXPECT_EQ(kind(1, moved, false), Kind::other);
+    EXPECT_EQ(kind(2, identity, false), Kind::other);
+    EXPECT_EQ(kind(3, identity, false), Kind::rectangle);
+    EXPECT_EQ(kind(3, identity, true), Kind::other);
 }
 
 }  // namespace
