@@ -83,6 +83,7 @@ private:
         for (std::size_t begin = 0; begin < keys_.size();) {
             const std::size_t last = std::min<std::size_t>(keys_.size(), begin + leaf_size_);
             const std::size_t end = subtree_end(begin, last, step);
+            fetch(refs, end);
             TreeletLeaf leaf;
             leaf.first = first_key_ + static_cast<std::uint32_t>(begin);
             leaf.count = static_cast<std::uint32_t>(end - begin);
@@ -94,6 +95,14 @@ private:
             leaves_.push_back(leaf);
             begin = end;
         }
+    }
+
+    // Refs lie in no order, so the processor is told which ones come after the next few leaves.
+    void fetch(std::span<const BoxRef> refs, std::size_t begin) const {
+        begin += 2 * leaf_size_;
+        const std::size_t end = std::min<std::size_t>(keys_.size(), begin + leaf_size_);
+        for (; begin < end; ++begin)
+            __builtin_prefetch(&refs[keys_[begin].place]);
     }
 
     void add_treelet(std::span<const TreeletLeaf> leaves) {
