@@ -57,6 +57,24 @@ private:
     std::exception_ptr failure_;
 };
 
+#ifdef RAYPICK_THREADS_TBB
+// Runs `tasks` times the same on up to as many of `threads` threads.
+void run_in_arena(std::size_t tasks, int threads, const std::function<void()>& work) {
+    const auto run = [&] {
+        tbb::parallel_for(
+            std::size_t{0}, tasks, [&](std::size_t) { work(); }, tbb::simple_partitioner());
+    };
+    // In the arena that the calling thread is in already, if it is of that size: workers stay there
+    // from one loop to the next. Where they look for work a while after a loop, and where other
+    // programs keep the cores busy, they did not come to that of the next loop before it was over.
+    if (threads == tbb::this_task_arena::max_concurrency()) {
+        tbb::this_task_arena::isolate(run);  // the waiting thread begins nothing else
+    } else {
+        tbb::task_arena(threads).execute(run);
+    }
+}
+#endif
+
 }  // namespace
 
 int hardware_threads() {
@@ -79,13 +97,8 @@ void parallel_for(std::size_t count, int threads, const std::stop_token& stop,
     } else {
 #ifdef RAYPICK_THREADS_TBB
         // TBB has no more workers than cores, and says so on standard error if asked for more.
-        const std::size_t slots = std::min(workers, static_cast<std::size_t>(hardware_threads()));
-        tbb::task_arena arena(static_cast<int>(slots));
-        arena.execute([&] {
-            tbb::parallel_for(
-                std::size_t{0}, slots, [&](std::size_t) { loop.work(); },
-                tbb::simple_partitioner());
-        });
+        const std::size_t most = std::min(wanted, static_cast<std::size_t>(hardware_threads()));
+        run_in_arena(std::min(most, count), static_cast<int>(most), [&] { loop.work(); });
 #else
         std::vector<std::jthread> team;
         for (std::size_t i = 1; i < workers; ++i)
