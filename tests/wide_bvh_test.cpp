@@ -1,6 +1,7 @@
 // The form of a tree that rays run on: every box once, children in the order of each octant.
 #include "tracer/bvh/wide_bvh.h"
 #include "tests/random.h"
+#include "tracer/error.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <stop_token>
 #include <utility>
@@ -29,12 +31,16 @@ Boxes scattered(std::uint64_t seed, std::size_t count, double size) {
     return boxes;
 }
 
-WideBvh wide_over(const Boxes& boxes, const LeafCosts& costs = {}) {
+Bvh binary_over(const Boxes& boxes, const LeafCosts& costs = {}) {
     const BoxSource source = [&boxes](std::size_t first, std::span<Bounds> wanted) {
         std::copy_n(boxes.begin() + static_cast<std::ptrdiff_t>(first), wanted.size(),
                     wanted.begin());
     };
-    return widen(build_bvh(boxes.size(), source, {.costs = costs, .threads = 1, .stop = {}}));
+    return build_bvh(boxes.size(), source, {.costs = costs, .threads = 1, .stop = {}});
+}
+
+WideBvh wide_over(const Boxes& boxes, const LeafCosts& costs = {}) {
+    return widen(binary_over(boxes, costs));
 }
 
 bool holds(const Bounds& outer, const Bounds& inner) {
@@ -161,6 +167,33 @@ TEST(WideBvh, LeavesHaveAnySize) {
     EXPECT_EQ(indices_of(bvh, bvh.nodes[0].ref(0)).size(), 300u);
     EXPECT_EQ(indices_of(bvh, bvh.nodes[0].ref(1)).size(), 1u);
     EXPECT_THAT(Reached(bvh, boxes).times, testing::Each(1));
+}
+
+// Byte for byte: from trees with no subtrees below the nodes near the root to such with many nodes.
+TEST(WideBvh, IsTheSameForAnyNumberOfThreads) {
+    for (const std::size_t count : {2u, 9u, 300u, 3000u, 30000u}) {
+        const Boxes boxes = scattered(count, count, 0.1);
+        const WideBvh one = wide_over(boxes, {.max_leaf = 1});
+        for (const int threads : {0, 2, 3, 8}) {
+            SCOPED_TRACE(testing::Message() << count << " on " << threads);
+            const WideBvh same = widen(binary_over(boxes, {.max_leaf = 1}), threads);
+            EXPECT_EQ(same.root, one.root);
+            EXPECT_EQ(same.indices, one.indices);
+            ASSERT_EQ(same.nodes.size(), one.nodes.size());
+            EXPECT_EQ(std::memcmp(same.nodes.data(), one.nodes.data(),
+                                  one.nodes.size() * sizeof(WideNode)),
+                      0);
+        }
+    }
+}
+
+TEST(WideBvh, CanBeCancelled) {
+    std::stop_source source;
+    source.request_stop();
+    for (const int threads : {1, 2}) {
+        Bvh binary = binary_over(scattered(1, 1000, 0.1));
+        EXPECT_THROW(widen(std::move(binary), threads, source.get_token()), Cancelled);
+    }
 }
 
 TEST(WideBvh, BodiesStopTheWalkOverIndices) {

@@ -114,9 +114,9 @@ void place_objects(AccelState& state, const BuildOptions& options) {
         std::copy_n(boxes.begin() + static_cast<std::ptrdiff_t>(first), wanted.size(),
                     wanted.begin());
     };
-    state.top = widen(
-        build_bvh(boxes.size(), source,
-                  {.costs = {.max_leaf = 1}, .threads = options.threads, .stop = options.stop}));
+    const BvhOptions how{
+        .costs = {.max_leaf = 1}, .threads = options.threads, .stop = options.stop};
+    state.top = widen(build_bvh(boxes.size(), source, how), options.threads, options.stop);
     if (!state.bounds.empty()) {
         const glm::vec3 farthest = glm::max(glm::abs(state.bounds.min), glm::abs(state.bounds.max));
         state.reach = std::max({farthest.x, farthest.y, farthest.z});

@@ -97,7 +97,8 @@ std::shared_ptr<const PrimitiveTree> build_tree(const TreeSource& source,
     const BvhOptions how{.costs = source.costs, .threads = threads, .stop = options.stop};
     tree.bvh = widen(options.quality == TreeQuality::first
                          ? build_bvh_fast(source.count, source.boxes, how)
-                         : build_bvh(source.count, source.boxes, how));
+                         : build_bvh(source.count, source.boxes, how),
+                     threads, options.stop);
     if (source.mesh != nullptr) {
         tree.patches = take_triangles(tree.bvh, *source.mesh, threads, options.stop);
     }

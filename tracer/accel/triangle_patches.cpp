@@ -187,6 +187,8 @@ void make_room(TrianglePatches& patches, std::size_t blocks) {
         throw std::length_error("the mesh has too many triangles for one tree");
     }
     patches.blocks.resize(blocks + kReadBeyond);
+    std::fill_n(patches.blocks.begin() + static_cast<std::ptrdiff_t>(blocks), kReadBeyond,
+                TrianglePatches::Block{});
 }
 
 }  // namespace
@@ -195,7 +197,7 @@ TrianglePatches take_triangles(WideBvh& bvh, const Mesh& mesh, int threads,
                                const std::stop_token& stop) {
     TrianglePatches patches;
     if (bvh.empty()) return patches;
-    constexpr std::size_t kNodes = 512;
+    constexpr std::size_t kNodes = 256;
     std::vector<Portion> portions;
     for (std::size_t n = 0; n == 0 || n < bvh.nodes.size(); n += kNodes)
         portions.push_back({bvh, mesh, n, std::min(bvh.nodes.size(), n + kNodes), {}});

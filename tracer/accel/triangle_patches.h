@@ -5,6 +5,7 @@
 #pragma once
 
 #include "tracer/bvh/wide_bvh.h"
+#include "tracer/parallel/large_array.h"
 #include "tracer/scene/scene.h"
 
 #include <glm/vec3.hpp>
@@ -12,7 +13,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <stop_token>
-#include <vector>
 
 namespace raypick {
 
@@ -48,7 +48,7 @@ struct TrianglePatches {
     struct alignas(16) Block {
         std::byte bytes[16];
     };
-    std::vector<Block> blocks;
+    LargeArray<Block> blocks;
 
     [[nodiscard]] const TrianglePatch& at(std::size_t block) const {
         return *reinterpret_cast<const TrianglePatch*>(blocks.data() + block);

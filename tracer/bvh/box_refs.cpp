@@ -7,10 +7,6 @@
 #include <array>
 #include <vector>
 
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
-
 namespace raypick {
 
 namespace {
@@ -50,15 +46,7 @@ RefBounds measure(std::span<const BoxRef> refs) {
 
 RefArray allocate_refs(std::size_t count) {
     RefArray array;
-    // Having a small page takes a tenth of the time in which the refs on it are made a tree of.
-    constexpr std::size_t kLargePage = std::size_t{1} << 21;
-    const bool large = count * sizeof(BoxRef) >= 2 * kLargePage;
-    const std::align_val_t alignment{large ? kLargePage : alignof(BoxRef)};
-    void* const memory = ::operator new(count * sizeof(BoxRef), alignment);
-    array.storage = {static_cast<BoxRef*>(memory), FreeRefs{alignment}};
-#ifdef MADV_HUGEPAGE
-    if (large) madvise(memory, count * sizeof(BoxRef), MADV_HUGEPAGE);  // no harm if it fails
-#endif
+    array.storage.resize(count);
     return array;
 }
 
@@ -67,13 +55,13 @@ RefArray make_refs(std::size_t count, const BoxSource& boxes, const BvhOptions& 
     std::vector<Chunk> chunks((count + kChunk - 1) / kChunk);
     parallel_for(chunks.size(), options.threads, options.stop, [&](std::size_t i) {
         chunks[i] =
-            fill_chunk(boxes, i * kChunk, std::min(count, (i + 1) * kChunk), array.storage.get());
+            fill_chunk(boxes, i * kChunk, std::min(count, (i + 1) * kChunk), array.storage.data());
     });
     if (options.stop.stop_requested()) throw Cancelled();
     for (std::size_t i = 0; i < chunks.size(); ++i) {
-        BoxRef* begin = array.storage.get() + i * kChunk;
+        BoxRef* begin = array.storage.data() + i * kChunk;
         if (array.count != i * kChunk)
-            std::copy(begin, begin + chunks[i].count, array.storage.get() + array.count);
+            std::copy(begin, begin + chunks[i].count, array.storage.data() + array.count);
         array.count += chunks[i].count;
         array.bounds.extend(chunks[i].bounds);
     }

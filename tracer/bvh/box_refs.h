@@ -3,11 +3,10 @@
 
 #include "tracer/bvh/bvh.h"
 #include "tracer/bvh/float4.h"
+#include "tracer/parallel/large_array.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
-#include <new>
 #include <span>
 
 namespace raypick {
@@ -59,19 +58,14 @@ struct RefBounds {
 
 RefBounds measure(std::span<const BoxRef> refs);
 
-struct FreeRefs {
-    std::align_val_t alignment{alignof(BoxRef)};
-    void operator()(BoxRef* refs) const { ::operator delete(refs, alignment); }
-};
-
-// Not a vector: its memory is touched first by the threads that fill it, and large pages are asked
-// for where there are any.
+// The refs that there are, in an array with room for more.
 struct RefArray {
-    std::unique_ptr<BoxRef[], FreeRefs> storage;
+    LargeArray<BoxRef> storage;
     std::size_t count = 0;
     RefBounds bounds;
 
-    [[nodiscard]] std::span<BoxRef> refs() const { return {storage.get(), count}; }
+    [[nodiscard]] std::span<BoxRef> refs() { return {storage.data(), count}; }
+    [[nodiscard]] std::span<const BoxRef> refs() const { return {storage.data(), count}; }
 };
 
 // Room for `count` refs, uninitialised and empty. Throws std::bad_alloc.

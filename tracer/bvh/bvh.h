@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tracer/geometry/bounds.h"
+#include "tracer/parallel/large_array.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -25,8 +26,8 @@ struct BvhNode {
 struct Bvh {
     static constexpr int kMaxDepth = 64;
 
-    std::vector<BvhNode> nodes;          // nodes[0] is the root; empty if there are no boxes
-    std::vector<std::uint32_t> indices;  // of the boxes given to build_bvh
+    std::vector<BvhNode> nodes;         // nodes[0] is the root; empty if there are no boxes
+    LargeArray<std::uint32_t> indices;  // of the boxes given to build_bvh
 
     [[nodiscard]] std::uint64_t bytes() const {
         return nodes.size() * sizeof(BvhNode) + indices.size() * sizeof(std::uint32_t);

@@ -55,12 +55,12 @@ struct Forest {
 // From one chunk of keys.
 class ForestBuilder {
 public:
-    ForestBuilder(std::span<MortonKey> keys, std::uint32_t first_key, std::uint32_t leaf_size)
+    ForestBuilder(std::span<const MortonKey> keys, std::uint32_t first_key, std::uint32_t leaf_size)
         : keys_(keys), first_key_(first_key), leaf_size_(leaf_size) {}
 
-    // Turns places into the indices of the boxes, while they are at hand.
-    Forest build(std::span<const BoxRef> refs) {
-        find_leaves(refs);
+    // Sets the indices of the boxes in the keys' order, while they are at hand.
+    Forest build(std::span<const BoxRef> refs, std::span<std::uint32_t> indices) {
+        find_leaves(refs, indices);
         forest_.nodes.reserve(2 * leaves_.size());
         const auto step = [this](std::size_t i) {
             return step_before(keys_,
@@ -77,7 +77,7 @@ public:
     }
 
 private:
-    void find_leaves(std::span<const BoxRef> refs) {
+    void find_leaves(std::span<const BoxRef> refs, std::span<std::uint32_t> indices) {
         leaves_.reserve(keys_.size() / 2);
         const auto step = [this](std::size_t i) { return step_before(keys_, i); };
         for (std::size_t begin = 0; begin < keys_.size();) {
@@ -87,10 +87,10 @@ private:
             TreeletLeaf leaf;
             leaf.first = first_key_ + static_cast<std::uint32_t>(begin);
             leaf.count = static_cast<std::uint32_t>(end - begin);
-            for (MortonKey& key : keys_.subspan(begin, end - begin)) {
-                const BoxRef& ref = refs[key.place];
+            for (std::size_t i = begin; i < end; ++i) {
+                const BoxRef& ref = refs[keys_[i].place];
                 leaf.box.extend(ref.box());
-                key.place = ref.index();
+                indices[i] = ref.index();
             }
             leaves_.push_back(leaf);
             begin = end;
@@ -99,7 +99,7 @@ private:
 
     // Refs lie in no order, so the processor is told which ones come after the next few leaves.
     void fetch(std::span<const BoxRef> refs, std::size_t begin) const {
-        begin += 2 * leaf_size_;
+        begin += std::size_t{2} * leaf_size_;
         const std::size_t end = std::min<std::size_t>(keys_.size(), begin + leaf_size_);
         for (; begin < end; ++begin)
             __builtin_prefetch(&refs[keys_[begin].place]);
@@ -113,22 +113,23 @@ private:
         forest_.bounds.extend(forest_.roots.back());
     }
 
-    std::span<MortonKey> keys_;
+    std::span<const MortonKey> keys_;
     std::uint32_t first_key_;
     std::uint32_t leaf_size_;
     std::vector<TreeletLeaf> leaves_;
     Forest forest_;
 };
 
-std::vector<Forest> plant(std::span<const BoxRef> refs, std::span<MortonKey> keys,
-                          const BvhOptions& options) {
+// Sets the indices, too.
+std::vector<Forest> plant(std::span<const BoxRef> refs, std::span<const MortonKey> keys,
+                          std::span<std::uint32_t> indices, const BvhOptions& options) {
     std::vector<Forest> forests((keys.size() + kChunk - 1) / kChunk);
     parallel_for(forests.size(), options.threads, options.stop, [&](std::size_t i) {
         const std::size_t begin = i * kChunk;
-        ForestBuilder builder(keys.subspan(begin, std::min(kChunk, keys.size() - begin)),
-                              static_cast<std::uint32_t>(begin),
+        const std::size_t size = std::min(kChunk, keys.size() - begin);
+        ForestBuilder builder(keys.subspan(begin, size), static_cast<std::uint32_t>(begin),
                               std::min(options.costs.max_leaf, options.costs.block_size));
-        forests[i] = builder.build(refs);
+        forests[i] = builder.build(refs, indices.subspan(begin, size));
     });
     if (options.stop.stop_requested()) throw Cancelled();
     return forests;
@@ -144,7 +145,6 @@ struct TreeletPlace {
 struct UpperTree {
     Bvh bvh;
     std::vector<TreeletPlace> places;  // by the indices of the tree's leaves
-    std::size_t treelet_nodes = 0;
 };
 
 UpperTree join_roots(std::span<const Forest> forests, const BvhOptions& options) {
@@ -160,7 +160,6 @@ UpperTree join_roots(std::span<const Forest> forests, const BvhOptions& options)
             upper.places.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k)});
         }
         roots.bounds.extend(forests[i].bounds);
-        upper.treelet_nodes += forests[i].nodes.size();
     }
     BvhOptions one_each = options;
     one_each.costs = {.node = 1.0f, .block = 1.0f, .block_size = 1, .min_leaf = 1, .max_leaf = 1};
@@ -168,25 +167,41 @@ UpperTree join_roots(std::span<const Forest> forests, const BvhOptions& options)
     return upper;
 }
 
-// Puts each treelet in place of the leaf that stands for it.
-std::vector<BvhNode> open_treelets(const UpperTree& upper, std::span<const Forest> forests) {
-    std::vector<BvhNode> nodes;
-    nodes.reserve(upper.bvh.nodes.size() + upper.treelet_nodes - upper.places.size());
-    nodes = upper.bvh.nodes;
-    for (std::size_t i = 0; i < upper.bvh.nodes.size(); ++i) {
+BvhNode moved(BvhNode node, std::size_t offset) {
+    if (!node.is_leaf()) node.first += static_cast<std::uint32_t>(offset);
+    return node;
+}
+
+// Puts each treelet's root in place of the leaf that stands for it, and the rest behind them all.
+std::vector<BvhNode> open_treelets(UpperTree&& upper, std::span<const Forest> forests,
+                                   const BvhOptions& options) {
+    std::vector<BvhNode> nodes = std::move(upper.bvh.nodes);
+    const std::size_t upper_nodes = nodes.size();
+    std::vector<std::size_t> begins;
+    std::size_t end = upper_nodes;
+    for (const Forest& forest : forests) {
+        begins.push_back(end);
+        end += forest.nodes.size() - forest.roots.size();
+    }
+    nodes.resize(end);
+    // What is added to places counted from a treelet's root.
+    const auto offset = [&](std::size_t forest, std::size_t treelet) {
+        return begins[forest] + forests[forest].begins[treelet] - treelet - 1;
+    };
+    parallel_for(forests.size(), options.threads, options.stop, [&](std::size_t i) {
+        std::size_t next = begins[i];
+        for (std::size_t treelet = 0; treelet < forests[i].roots.size(); ++treelet) {
+            const std::uint32_t root = forests[i].begins[treelet];
+            for (std::uint32_t k = root + 1; k < forests[i].begins[treelet + 1]; ++k)
+                nodes[next++] = moved(forests[i].nodes[k], offset(i, treelet));
+        }
+    });
+    if (options.stop.stop_requested()) throw Cancelled();
+    for (std::size_t i = 0; i < upper_nodes; ++i) {
         if (!nodes[i].is_leaf()) continue;
-        const TreeletPlace place = upper.places[upper.bvh.indices[nodes[i].first]];
-        const Forest& forest = forests[place.forest];
-        const std::uint32_t begin = forest.begins[place.treelet];
-        const std::uint32_t end = forest.begins[place.treelet + 1];
-        const auto offset = static_cast<std::uint32_t>(nodes.size()) - 1;
-        const auto moved = [offset](BvhNode node) {
-            if (!node.is_leaf()) node.first += offset;
-            return node;
-        };
-        nodes[i] = moved(forest.nodes[begin]);
-        for (std::uint32_t k = begin + 1; k < end; ++k)
-            nodes.push_back(moved(forest.nodes[k]));
+        const TreeletPlace at = upper.places[upper.bvh.indices[nodes[i].first]];
+        const Forest& forest = forests[at.forest];
+        nodes[i] = moved(forest.nodes[forest.begins[at.treelet]], offset(at.forest, at.treelet));
     }
     return nodes;
 }
@@ -195,15 +210,15 @@ std::vector<BvhNode> open_treelets(const UpperTree& upper, std::span<const Fores
 
 Bvh build_bvh_fast(std::size_t count, const BoxSource& boxes, const BvhOptions& options) {
     RefArray array = make_refs(count, boxes, options);
-    std::vector<MortonKey> keys = morton_order(array, options);
-    const std::vector<Forest> forests = plant(array.refs(), keys, options);
-    array = {};
+    LargeArray<MortonKey> keys = morton_order(array, options);
     Bvh bvh;
-    if (keys.empty()) return bvh;
-    bvh.nodes = open_treelets(join_roots(forests, options), forests);
-    bvh.indices.reserve(keys.size());
-    for (const MortonKey& key : keys)
-        bvh.indices.push_back(key.place);
+    bvh.indices.resize(keys.size());
+    const std::vector<Forest> forests = plant(array.refs(), keys, bvh.indices, options);
+    array = {};
+    keys = {};
+    if (!forests.empty()) {
+        bvh.nodes = open_treelets(join_roots(forests, options), forests, options);
+    }
     return bvh;
 }
 

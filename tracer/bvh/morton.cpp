@@ -47,7 +47,7 @@ private:
     Float4 scale_ = all4(0.0f);
 };
 
-using Keys = std::vector<MortonKey>;
+using Keys = LargeArray<MortonKey>;
 using Counts = std::array<std::uint32_t, 1u << kDigitBits>;
 
 // Sorts by digits, lowest first, each pass keeping the order of equal ones.
@@ -116,7 +116,7 @@ private:
 
 }  // namespace
 
-std::vector<MortonKey> morton_order(const RefArray& array, const BvhOptions& options) {
+LargeArray<MortonKey> morton_order(const RefArray& array, const BvhOptions& options) {
     const std::span<const BoxRef> refs = array.refs();
     const Grid grid(array.bounds.centres);
     Keys keys(refs.size());

@@ -7,7 +7,6 @@
 #include "tracer/bvh/box_refs.h"
 
 #include <cstdint>
-#include <vector>
 
 namespace raypick {
 
@@ -17,6 +16,6 @@ struct MortonKey {
 };
 
 // Of all refs, by code, then by place. Throws Cancelled.
-std::vector<MortonKey> morton_order(const RefArray& array, const BvhOptions& options);
+LargeArray<MortonKey> morton_order(const RefArray& array, const BvhOptions& options);
 
 }  // namespace raypick

@@ -6,13 +6,14 @@
 #pragma once
 
 #include "tracer/bvh/bvh.h"
+#include "tracer/parallel/large_array.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <span>
-#include <vector>
+#include <stop_token>
 
 namespace raypick {
 
@@ -59,8 +60,8 @@ struct WideBvh {
     // Of an index: the last one of its leaf.
     static constexpr std::uint32_t kLast = 1u << 31;
 
-    std::vector<WideNode> nodes;
-    std::vector<std::uint32_t> indices;
+    LargeArray<WideNode> nodes;
+    LargeArray<std::uint32_t> indices;
     WideRef root;
     Bounds bounds;  // empty if there is nothing in the tree
 
@@ -89,8 +90,9 @@ bool each_index(const WideBvh& bvh, const WideRef& leaf, const Body& body) {
     }
 }
 
-// Takes up to eight descendants of a binary node into one, those of the largest surface first. For
-// less than 2^31 boxes; throws std::length_error otherwise.
-WideBvh widen(Bvh&& bvh);
+// Takes up to eight descendants of a binary node into one, those of the largest surface first. The
+// same for any number of threads. For less than 2^31 boxes; throws std::length_error otherwise, and
+// Cancelled.
+WideBvh widen(Bvh&& bvh, int threads = 1, const std::stop_token& stop = {});
 
 }  // namespace raypick
