@@ -3,6 +3,7 @@
 #include "tests/one_leaf.h"
 #include "tests/random.h"
 #include "tests/tracer_scenes.h"
+#include "tracer/accel/trace_rays.h"
 #include "tracer/error.h"
 
 #include <gmock/gmock.h>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cstring>
 #include <stop_token>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -226,6 +228,22 @@ TEST(TrianglePatches, AreTheSameForAnyNumberOfThreads) {
         EXPECT_EQ(leaves_of(again), leaves_of(first));
     }
     expect_takes_all(mesh, bvh, 3);
+}
+
+TEST(TrianglePatches, AreTheSameForAnyInstructionSet) {
+    const Mesh mesh = mesh_of(ball_data(5));
+    const WideBvh bvh = tree_over(mesh);
+    WideBvh chosen = bvh;
+    const TrianglePatches patches = take_triangles(chosen, mesh, 1, {});
+    for (const std::string& name : instruction_sets()) {
+        SCOPED_TRACE(name);
+        use_instruction_set(name);
+        WideBvh again = bvh;
+        const TrianglePatches same = take_triangles(again, mesh, 1, {});
+        use_instruction_set("");
+        ASSERT_EQ(same.blocks.size(), patches.blocks.size());
+        EXPECT_EQ(std::memcmp(same.blocks.data(), patches.blocks.data(), patches.bytes()), 0);
+    }
 }
 
 TEST(TrianglePatches, OfNoTrianglesAreNone) {

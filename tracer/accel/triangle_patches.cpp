@@ -1,6 +1,6 @@
 #include "tracer/accel/triangle_patches.h"
 
-#include "tracer/bvh/float4.h"
+#include "tracer/accel/same_corners.h"
 #include "tracer/error.h"
 #include "tracer/parallel/parallel.h"
 
@@ -15,7 +15,9 @@ namespace raypick {
 
 namespace {
 
-// The corners of a leaf's next triangles, and the patch of as many of them as fit into one.
+using Blocks = LargeArray<TrianglePatches::Block>;
+
+// A patch of as many of a leaf's next triangles as fit into one.
 class PatchMaker {
 public:
     // Of the first eight primitives at most.
@@ -25,8 +27,9 @@ public:
             primitives_[i] = primitives[i] & ~WideBvh::kLast;
             const glm::uvec3 t = mesh.triangles[primitives_[i]];
             for (int k = 0; k < 3; ++k)
-                put_corner(3 * i + static_cast<std::size_t>(k), mesh.positions[t[k]]);
+                put_place(3 * i + static_cast<std::size_t>(k), mesh.positions[t[k]]);
         }
+        find_first_corners(places_, 3 * most, first_);
         while (patch_.triangles < most && add_triangle(patch_.triangles)) {
         }
     }
@@ -34,47 +37,34 @@ public:
     [[nodiscard]] std::uint32_t triangles() const { return patch_.triangles; }
     void finish_leaf() { patch_.last = 1; }
 
-    void append_to(std::vector<TrianglePatches::Block>& blocks) const {
+    // Copies as much as there may be, as it takes less time than to copy what there is. What lies
+    // behind that is overwritten.
+    void append_to(Blocks& blocks) const {
+        constexpr std::size_t kMostBlocks = 16;
         const std::size_t first = blocks.size();
-        blocks.resize(first + patch_.size());
+        blocks.resize(first + kMostBlocks);
         auto* at = reinterpret_cast<std::byte*>(blocks.data() + first);
-        const auto put = [&at](const void* from, std::size_t bytes) {
-            std::memcpy(at, from, bytes);
-            at += bytes;
-        };
-        put(&patch_, sizeof patch_);
-        put(primitives_.data(), patch_.triangles * sizeof(std::uint32_t));
-        for (const Coordinates& along : coordinates_)
-            put(along.data(), patch_.corners * sizeof(float));
+        std::memcpy(at, &patch_, sizeof patch_);
+        at += sizeof patch_;
+        std::memcpy(at, primitives_.data(), sizeof primitives_);
+        at += patch_.triangles * sizeof(std::uint32_t);
+        for (const Coordinates& along : coordinates_) {
+            std::memcpy(at, along.data(), TrianglePatch::kMostCorners * sizeof(float));
+            at += patch_.corners * sizeof(float);
+        }
+        std::memset(at, 0, sizeof(TrianglePatches::Block));
+        blocks.resize(first + patch_.size());
     }
 
 private:
     static constexpr std::size_t kTriangles = TrianglePatch::kMostTriangles;
     // With room for a last triangle that doesn't fit.
-    using Coordinates = std::array<std::int32_t, TrianglePatch::kMostCorners + 3>;  // as bits
+    using Coordinates = std::array<std::uint32_t, TrianglePatch::kMostCorners + 3>;  // as bits
 
-    void put_corner(std::size_t i, const glm::vec3& position) {
-        const auto at = std::bit_cast<std::array<std::int32_t, 3>>(position);
+    void put_place(std::size_t i, const glm::vec3& position) {
+        const auto at = std::bit_cast<std::array<std::uint32_t, 3>>(position);
         for (std::size_t axis = 0; axis < 3; ++axis)
-            corners_[axis][i / 4][i % 4] = at[axis];
-    }
-
-    // The first corner at the position of corner i, bit for bit. Looks at all up to i at once,
-    // four by four: which of them it is can't be foretold, so that a branch would be costly.
-    [[nodiscard]] std::size_t first_like(std::size_t i) const {
-        const std::size_t last = i / 4;
-        const Int4 x = all4(corners_[0][last][i % 4]);
-        const Int4 y = all4(corners_[1][last][i % 4]);
-        const Int4 z = all4(corners_[2][last][i % 4]);
-        Int4 bit{1, 2, 4, 8};
-        Int4 same{};
-        for (std::size_t v = 0; v <= last; ++v) {
-            same |= (corners_[0][v] == x) & (corners_[1][v] == y) & (corners_[2][v] == z) & bit;
-            bit <<= 4;
-        }
-        same |= __builtin_shufflevector(same, same, 2, 3, 0, 1);
-        return static_cast<std::size_t>(
-            std::countr_zero(static_cast<std::uint32_t>(same[0] | same[1])));
+            places_.along[axis][i] = at[axis];
     }
 
     // False if there is no room for its corners.
@@ -83,12 +73,11 @@ private:
         std::array<std::uint32_t, 3> numbers{};
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t i = 3 * std::size_t{triangle} + k;
-            const std::size_t first = first_like(i);
-            numbers[k] = first == i ? corners : numbers_[first];
-            corners += first == i ? 1u : 0u;
+            numbers[k] = first_[i] == i ? corners : numbers_[first_[i]];
+            corners += first_[i] == i ? 1u : 0u;
             numbers_[i] = numbers[k];
             for (std::size_t axis = 0; axis < 3; ++axis)
-                coordinates_[axis][numbers[k]] = corners_[axis][i / 4][i % 4];
+                coordinates_[axis][numbers[k]] = places_.along[axis][i];
         }
         if (corners > TrianglePatch::kMostCorners) return false;
         for (std::size_t k = 0; k < 3; ++k)
@@ -100,14 +89,14 @@ private:
 
     TrianglePatch patch_;
     std::array<std::uint32_t, kTriangles> primitives_;
-    std::array<std::array<Int4, 3 * kTriangles / 4>, 3> corners_;  // axis by axis, as bits
-    std::array<std::uint32_t, 3 * kTriangles> numbers_;            // of the corners, in the patch
+    CornerPlaces places_;
+    FirstCorners first_;
+    std::array<std::uint32_t, CornerPlaces::kMost> numbers_;  // of the corners, in the patch
     std::array<Coordinates, 3> coordinates_;
 };
 
 // Appends a leaf's patches.
-void collect(const WideBvh& bvh, const Mesh& mesh, const WideRef& leaf,
-             std::vector<TrianglePatches::Block>& blocks) {
+void collect(const WideBvh& bvh, const Mesh& mesh, const WideRef& leaf, Blocks& blocks) {
     std::span<const std::uint32_t> primitives = indices_of(bvh, leaf);
     while (!primitives.empty()) {
         PatchMaker patch(mesh, primitives);
@@ -136,7 +125,7 @@ struct Portion {
     const Mesh& mesh;
     std::size_t begin = 0;  // node
     std::size_t end = 0;
-    std::vector<TrianglePatches::Block> blocks;
+    Blocks blocks;
 
     // A leaf's index counts from the portion's first block then.
     void collect_leaves() {

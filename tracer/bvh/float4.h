@@ -19,9 +19,6 @@ using Int4 = std::int32_t __attribute__((vector_size(16)));
 inline Float4 all4(float value) {
     return Float4{value, value, value, value};
 }
-inline Int4 all4(std::int32_t value) {
-    return Int4{value, value, value, value};
-}
 
 // The second argument where one is NaN.
 inline Float4 min4(Float4 a, Float4 b) {
