@@ -95,9 +95,13 @@ private:
     std::array<Coordinates, 3> coordinates_;
 };
 
-// Appends a leaf's patches.
-void collect(const WideBvh& bvh, const Mesh& mesh, const WideRef& leaf, Blocks& blocks) {
-    std::span<const std::uint32_t> primitives = indices_of(bvh, leaf);
+// A leaf, and where it stands in the tree.
+struct Leaf {
+    std::uint32_t* place = nullptr;
+    std::span<const std::uint32_t> primitives;
+};
+
+void append_patches(std::span<const std::uint32_t> primitives, const Mesh& mesh, Blocks& blocks) {
     while (!primitives.empty()) {
         PatchMaker patch(mesh, primitives);
         primitives = primitives.subspan(patch.triangles());
@@ -107,12 +111,12 @@ void collect(const WideBvh& bvh, const Mesh& mesh, const WideRef& leaf, Blocks& 
 }
 
 // Reads along the leaves' order jump about in the mesh, so the processor is told what comes.
-void fetch_triangles(std::span<const std::uint32_t> primitives, const Mesh& mesh) {
-    for (const std::uint32_t primitive : primitives)
+void fetch_triangles(const Leaf& leaf, const Mesh& mesh) {
+    for (const std::uint32_t primitive : leaf.primitives)
         __builtin_prefetch(&mesh.triangles[primitive & ~WideBvh::kLast]);
 }
-void fetch_corners(std::span<const std::uint32_t> primitives, const Mesh& mesh) {
-    for (const std::uint32_t primitive : primitives) {
+void fetch_corners(const Leaf& leaf, const Mesh& mesh) {
+    for (const std::uint32_t primitive : leaf.primitives) {
         const glm::uvec3 t = mesh.triangles[primitive & ~WideBvh::kLast];
         for (int k = 0; k < 3; ++k)
             __builtin_prefetch(&mesh.positions[t[k]]);
@@ -130,41 +134,41 @@ struct Portion {
     // A leaf's index counts from the portion's first block then.
     void collect_leaves() {
         constexpr std::size_t kAhead = 4;  // leaves
-        const std::vector<std::uint32_t*> leaves = leaves_of();
+        std::vector<Leaf> leaves;
+        leaves.reserve(kWidth * (end - begin));
+        std::size_t triangles = 0;
+        each_leaf([&](std::uint32_t& place) {
+            leaves.push_back({&place, indices_of(bvh, {place})});
+            triangles += leaves.back().primitives.size();
+        });
+        blocks.reserve(2 * triangles);  // enough for surfaces
         for (std::size_t i = 0; i < leaves.size() + 2 * kAhead; ++i) {
-            if (i < leaves.size()) fetch_triangles(indices_of(bvh, {*leaves[i]}), mesh);
+            if (i < leaves.size()) fetch_triangles(leaves[i], mesh);
             const std::size_t next = i - kAhead;
-            if (next < leaves.size()) fetch_corners(indices_of(bvh, {*leaves[next]}), mesh);
+            if (next < leaves.size()) fetch_corners(leaves[next], mesh);
             const std::size_t now = next - kAhead;
             if (now >= leaves.size()) continue;
-            const auto place = static_cast<std::uint32_t>(blocks.size());
-            collect(bvh, mesh, {*leaves[now]}, blocks);
-            *leaves[now] = WideRef::leaf(place).bits;
+            *leaves[now].place = WideRef::leaf(static_cast<std::uint32_t>(blocks.size())).bits;
+            append_patches(leaves[now].primitives, mesh, blocks);
         }
-        blocks.shrink_to_fit();
     }
 
     void move_to(TrianglePatches& patches, std::size_t block) {
         std::copy(blocks.begin(), blocks.end(),
                   patches.blocks.begin() + static_cast<std::ptrdiff_t>(block));
         blocks = {};
-        for (std::uint32_t* const leaf : leaves_of())
-            *leaf += static_cast<std::uint32_t>(block);
+        each_leaf([&](std::uint32_t& place) { place += static_cast<std::uint32_t>(block); });
     }
 
 private:
-    // Where the leaves stand in the tree.
-    [[nodiscard]] std::vector<std::uint32_t*> leaves_of() const {
-        if (bvh.root.is_leaf()) return {&bvh.root.bits};
-        std::vector<std::uint32_t*> leaves;
-        leaves.reserve(kWidth * (end - begin));
+    template <typename Body>
+    void each_leaf(const Body& body) const {
+        if (bvh.root.is_leaf()) body(bvh.root.bits);
         for (std::size_t n = begin; n < end; ++n) {
             for (std::uint32_t& child : bvh.nodes[n].child) {
-                if (child != WideRef::kNothing && WideRef{child}.is_leaf())
-                    leaves.push_back(&child);
+                if (child != WideRef::kNothing && WideRef{child}.is_leaf()) body(child);
             }
         }
-        return leaves;
     }
 };
 
