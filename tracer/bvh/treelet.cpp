@@ -28,6 +28,11 @@ Cut best_cut(std::span<const TreeletLeaf> leaves) {
     std::array<float, kMostTreeletLeaves> right_cost;
     const std::size_t count = leaves.size();
     Box4 right;
+    if (count == 2) {  // as every second range
+        right.extend(leaves[0].box);
+        right.extend(leaves[1].box);
+        return {1, right};
+    }
     for (std::size_t i = count - 1; i > 0; --i) {
         right.extend(leaves[i].box);
         right_cost[i] = right.half_area() * static_cast<float>(count - i);
