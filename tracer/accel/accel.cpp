@@ -3,6 +3,7 @@
 #include "tracer/accel/accel_state.h"
 #include "tracer/accel/cut_out.h"
 #include "tracer/accel/trace_rays.h"
+#include "tracer/error.h"
 
 #include <glm/common.hpp>
 
@@ -35,6 +36,10 @@ Instance instance_of(const Scene& scene, const Object& object, const SceneTrees&
     return instance;
 }
 
+void throw_if_stopped(const std::stop_token& stop) {
+    if (stop.stop_requested()) throw Cancelled();
+}
+
 // An entry of the top tree, and its box in the world.
 struct PlacedEntry {
     TopEntry entry;
@@ -62,7 +67,8 @@ void open_entry(const AccelState& state, std::size_t which, std::vector<PlacedEn
 // tell their parts apart (Benthin, Woop, Wald, Afra, "Improved Two-Level BVHs using Partial
 // Re-Braiding", HPG 2017). Objects that stand elsewhere than their shapes remain whole, as each of
 // their parts would have rays to be transformed again.
-void open_entries(const AccelState& state, std::vector<PlacedEntry>& entries) {
+void open_entries(const AccelState& state, std::vector<PlacedEntry>& entries,
+                  const std::stop_token& stop) {
     constexpr std::size_t kMostParts = 64;  // an object, on average
     if (entries.size() < 2) return;
     const std::size_t most = entries.size() * kMostParts;
@@ -77,6 +83,7 @@ void open_entries(const AccelState& state, std::vector<PlacedEntry>& entries) {
     for (std::size_t i = 0; i < entries.size(); ++i)
         consider(i);
     while (!candidates.empty() && entries.size() + kWidth <= most) {
+        throw_if_stopped(stop);
         const std::size_t which = candidates.top().second;
         candidates.pop();
         const std::size_t before = entries.size();
@@ -92,6 +99,7 @@ void place_objects(AccelState& state, const BuildOptions& options) {
     std::vector<PlacedEntry> entries;
     state.instances.reserve(scene.objects.size());
     for (const Object& object : scene.objects) {
+        throw_if_stopped(options.stop);
         const auto index = static_cast<std::uint32_t>(state.instances.size());
         state.instances.push_back(instance_of(scene, object, state.trees));
         const PrimitiveTree* tree = state.instances.back().tree;
@@ -103,7 +111,7 @@ void place_objects(AccelState& state, const BuildOptions& options) {
             state.unbounded.push_back(index);
         }
     }
-    open_entries(state, entries);
+    open_entries(state, entries, options.stop);
     std::vector<Bounds> boxes;
     for (const PlacedEntry& placed : entries) {
         state.entries.push_back(placed.entry);
