@@ -196,7 +196,7 @@ void put_shape(double* in, const Scene& scene, const Shape& shape, std::uint32_t
         put(in, In::kCentre, sphere->centre);
         in[In::kRadius * In::kLanes] = sphere->radius;
     } else {
-        const Rectangle& rectangle = std::get<Rectangle>(shape);
+        const auto& rectangle = std::get<Rectangle>(shape);
         put(in, In::kCorner, rectangle.corner);
         put(in, In::kEdgeU, rectangle.edge_u);
         put(in, In::kEdgeV, rectangle.edge_v);

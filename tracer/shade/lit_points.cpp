@@ -276,7 +276,7 @@ void LitPoints::add(std::uint32_t ray, const ShadingPoint& point, const glm::vec
     put(block, lane, kColour, own);
     block.ray[lane] = ray;
     block.opacity[lane] = material.opacity;
-    const auto bit = [lane](bool is) { return std::uint32_t{is} << lane; };
+    const auto bit = [lane](bool is) { return (is ? 1u : 0u) << lane; };
     block.shiny |= bit(material.specular != glm::vec3(0.0f));
     block.blinn |= bit(material.model != LocalModel::phong);
 }

@@ -43,7 +43,8 @@ public:
 
     // Towards the light from where it may arrive, points[k] being the point of rays[k]; both are as
     // long as there are points at least. Returns how many.
-    std::size_t take_shadow_rays(std::span<Ray> rays, std::span<std::uint32_t> points) const;
+    [[nodiscard]] std::size_t take_shadow_rays(std::span<Ray> rays,
+                                               std::span<std::uint32_t> points) const;
     void block(std::size_t i) { blocks_[i / kLanes].lit &= ~(1u << (i % kLanes)); }
     void tint(std::size_t i, const glm::vec3& share);
     // Adds the light to the points that it reaches.
