@@ -1,5 +1,6 @@
 #include "tracer/accel/trees.h"
 
+#include "tracer/bvh/float4.h"
 #include "tracer/error.h"
 #include "tracer/geometry/rounding.h"
 #include "tracer/parallel/parallel.h"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <span>
 #include <utility>
 #include <variant>
@@ -17,15 +19,28 @@ namespace raypick {
 
 namespace {
 
+// With a fourth lane that means nothing.
+Float4 position(const Mesh& mesh, std::uint32_t vertex) {
+    const glm::vec3* const at = &mesh.positions[vertex];
+    Float4 position{};
+    // All four at once, where there is something behind the three.
+    if (vertex + std::size_t{1} < mesh.positions.size()) {
+        std::memcpy(&position, at, sizeof position);
+    } else {
+        std::memcpy(&position, at, sizeof *at);
+    }
+    return position;
+}
+
 // A triangle with a NaN is never hit: its box stays empty.
 Bounds triangle_box(const Mesh& mesh, std::size_t index) {
     const glm::uvec3 t = mesh.triangles[index];
-    const glm::vec3 sum = mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z];
-    Bounds box;
-    if (!std::isfinite(sum.x + sum.y + sum.z)) return box;
-    for (int k = 0; k < 3; ++k)
-        box.extend(mesh.positions[t[k]]);
-    return box;
+    const Float4 a = position(mesh, t.x);
+    const Float4 b = position(mesh, t.y);
+    const Float4 c = position(mesh, t.z);
+    const Float4 sum = a + b + c;
+    if (!std::isfinite(sum[0] + sum[1] + sum[2])) return {};
+    return Box4{min4(min4(a, b), c), max4(max4(a, b), c)}.bounds();
 }
 
 Bounds sphere_box(const SphereSet& set, std::size_t index) {

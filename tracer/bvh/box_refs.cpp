@@ -26,8 +26,9 @@ Chunk fill_chunk(const BoxSource& boxes, std::size_t begin, std::size_t end, Box
         const std::span<Bounds> wanted(some.data(), std::min(some.size(), end - i));
         boxes(i, wanted);
         for (std::size_t k = 0; k < wanted.size(); ++k) {
-            if (!is_usable(wanted[k])) continue;
-            const BoxRef ref = make_ref(wanted[k], static_cast<std::uint32_t>(i + k));
+            const Box4 box = box4(wanted[k]);
+            if (!is_usable(box)) continue;
+            const BoxRef ref = make_ref(box, static_cast<std::uint32_t>(i + k));
             refs[begin + chunk.count++] = ref;
             chunk.bounds.extend(ref);
         }

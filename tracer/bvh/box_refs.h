@@ -30,15 +30,19 @@ inline BoxRef with_index(const BoxRef& ref, std::uint32_t index) {
     return {from_bits(bits), ref.max};
 }
 
-inline BoxRef make_ref(const Bounds& box, std::uint32_t index) {
-    const Float4 min{box.min.x, box.min.y, box.min.z, 0.0f};
-    return with_index({min, Float4{box.max.x, box.max.y, box.max.z, 0.0f}}, index);
+inline Box4 box4(const Bounds& box) {
+    return {Float4{box.min.x, box.min.y, box.min.z, 0.0f},
+            Float4{box.max.x, box.max.y, box.max.z, 0.0f}};
+}
+
+inline BoxRef make_ref(const Box4& box, std::uint32_t index) {
+    return with_index({box.min, box.max}, index);
 }
 
 // Neither empty nor infinite nor NaN, of which the last two times 0 are a NaN.
-inline bool is_usable(const Bounds& box) {
-    const glm::vec3 zero = 0.0f * box.min + 0.0f * box.max;
-    return !box.empty() && zero.x + zero.y + zero.z == 0.0f;
+inline bool is_usable(const Box4& box) {
+    const Int4 usable = (box.min <= box.max) & (0.0f * box.min + 0.0f * box.max == 0.0f);
+    return (usable[0] & usable[1] & usable[2]) != 0;
 }
 
 // Of a range of refs: around the boxes, and around twice their centres.

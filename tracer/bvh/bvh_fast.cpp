@@ -109,7 +109,7 @@ private:
         const std::size_t begin = forest_.nodes.size();
         forest_.begins.push_back(static_cast<std::uint32_t>(begin));
         append_treelet(forest_.nodes, leaves);
-        forest_.roots.push_back(make_ref(forest_.nodes[begin].bounds, 0));
+        forest_.roots.push_back(make_ref(box4(forest_.nodes[begin].bounds), 0));
         forest_.bounds.extend(forest_.roots.back());
     }
 

@@ -64,7 +64,7 @@ private:
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
             Bounds box;
             boxes_(bvh_.indices[i], {&box, 1});
-            if (is_usable(box)) node.bounds.extend(box);
+            if (is_usable(box4(box))) node.bounds.extend(box);
         }
     }
 
