@@ -151,6 +151,7 @@ struct Portion {
             *leaves[now].place = WideRef::leaf(static_cast<std::uint32_t>(blocks.size())).bits;
             append_patches(leaves[now].primitives, mesh, blocks);
         }
+        blocks.shrink_to_fit();
     }
 
     void move_to(TrianglePatches& patches, std::size_t block) {
