@@ -64,7 +64,8 @@ struct Passage {
 // Whether a hit's uv matters to anyone.
 template <typename Search>
 bool wants_uv(const Passage& passage) {
-    return (kKeepsHits<Search> && passage.query.uv) || passage.instance.holes || passage.query.accept;
+    return (kKeepsHits<Search> && passage.query.uv) || passage.instance.holes ||
+           passage.query.accept;
 }
 
 // Offers to the search what a shape's intersection found; true: stop. `element` is the shape's

@@ -98,8 +98,8 @@ private:
         const Object& object = state_.scene->objects[candidate.object];
         const bool front = ((found.front >> lane) & 1) != 0;
         if (!shows(object.sides, front) || !shows(query_.sides, front)) return false;
-        hit = {object.id, candidate.primitive, static_cast<float>(t), glm::vec2(found.uv(lane)),
-               front};
+        hit = {object.id, candidate.primitive, static_cast<float>(t),
+               query_.uv ? glm::vec2(found.uv(lane)) : glm::vec2(0.0f), front};
         return true;
     }
 
