@@ -35,6 +35,8 @@ HWY_INLINE FourFloats four(float a, float b, float c, float d) {
 
 class ConeFilter {
 public:
+    static constexpr std::size_t kAtOnce = hn::MaxLanes(Four());
+
     // `reach` is the largest coordinate of the ray's origin and of the cones, `rounded` says that
     // the origin was rounded to float.
     ConeFilter(const ObjectRay& ray, float t_min, float reach, bool rounded)

@@ -8,6 +8,7 @@
 #endif
 
 #include "tracer/accel/simd/group_triangles-inl.h"
+#include "tracer/accel/simd/sphere_bounds-inl.h"
 
 #include <glm/vec4.hpp>
 
@@ -15,16 +16,12 @@ HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// What is the same for all rays of a group. With f from the centre to a ray's origin, the ray is
-// nearest to the centre at t = -f.d / d.d, at the point q = f + t d, and within for half a chord of
-// sqrt((r^2 - q.q) / d.d). In float (u = 2^-24), with components of f of at most F, those of t d
-// are at most 1.8 F, q's are wrong by less than 32 u F, and r^2 - q.q where q is not longer than
-// about r by less than E = 192 u F (r + 32 u F) + 8 u r^2.
+// What is the same for all rays of a group; the errors as SphereLanes has them.
 struct GroupSphere {
     glm::vec3 centre{0.0f};
     float squared_radius = 0.0f;
-    float error = 0.0f;        // of r^2 - q.q: E
-    float along_error = 0.0f;  // of t |d|, and of half a chord besides E's part
+    float error = 0.0f;
+    float along_error = 0.0f;
 };
 
 inline GroupSphere group_sphere(const GroupSpace& space, const glm::vec4& sphere) {
@@ -45,52 +42,25 @@ inline GroupSphere group_sphere(const GroupSpace& space, const glm::vec4& sphere
     return result;
 }
 
-// Where a vector of rays enters and leaves a sphere, each wrong by `error` at most.
-struct SphereSpan {
-    RayFloats depth;  // r^2 - q.q: above 0 within
-    RayFloats enter;
-    RayFloats leave;
-    RayFloats error;
-};
-
-HWY_INLINE SphereSpan sphere_span(const GroupSpace& space, const GroupSphere& sphere,
-                                  std::size_t ray) {
+HWY_INLINE SphereSpan<Rays> sphere_span(const GroupSpace& space, const GroupSphere& sphere,
+                                        std::size_t ray) {
     const Rays d;
-    const auto dx = hn::Load(d, space.rays.direction[0].data() + ray);
-    const auto dy = hn::Load(d, space.rays.direction[1].data() + ray);
-    const auto dz = hn::Load(d, space.rays.direction[2].data() + ray);
-    const auto fx =
-        hn::Sub(hn::Load(d, space.rays.origin[0].data() + ray), hn::Set(d, sphere.centre.x));
-    const auto fy =
-        hn::Sub(hn::Load(d, space.rays.origin[1].data() + ray), hn::Set(d, sphere.centre.y));
-    const auto fz =
-        hn::Sub(hn::Load(d, space.rays.origin[2].data() + ray), hn::Set(d, sphere.centre.z));
-    const auto squared = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-    const auto towards = hn::MulAdd(fx, dx, hn::MulAdd(fy, dy, hn::Mul(fz, dz)));
-    const auto nearest = hn::Neg(hn::Div(towards, squared));
-    const auto qx = hn::MulAdd(nearest, dx, fx);
-    const auto qy = hn::MulAdd(nearest, dy, fy);
-    const auto qz = hn::MulAdd(nearest, dz, fz);
-    SphereSpan span;
-    span.depth = hn::NegMulAdd(
-        qx, qx, hn::NegMulAdd(qy, qy, hn::NegMulAdd(qz, qz, hn::Set(d, sphere.squared_radius))));
-    const auto length = hn::Sqrt(squared);
-    const auto half = hn::Sqrt(hn::Max(span.depth, hn::Zero(d)));
-    const auto chord = hn::Div(half, length);
-    span.enter = hn::Sub(nearest, chord);
-    span.leave = hn::Add(nearest, chord);
-    // Of the square root: E / half a chord, and sqrt(2 E) at most.
-    const auto error = hn::Set(d, sphere.error);
-    const auto of_root = hn::Min(hn::Div(error, half), hn::Sqrt(hn::Add(error, error)));
-    span.error = hn::Div(hn::Add(of_root, hn::Set(d, sphere.along_error)), length);
-    return span;
+    const auto load = [&](const GroupFloats& numbers)
+                          HWY_ATTR { return hn::Load(d, numbers.data() + ray); };
+    const GroupRays& rays = space.rays;
+    return SphereSpan<Rays>({hn::Sub(load(rays.origin[0]), hn::Set(d, sphere.centre.x)),
+                             hn::Sub(load(rays.origin[1]), hn::Set(d, sphere.centre.y)),
+                             hn::Sub(load(rays.origin[2]), hn::Set(d, sphere.centre.z)),
+                             load(rays.direction[0]), load(rays.direction[1]),
+                             load(rays.direction[2]), hn::Set(d, sphere.squared_radius),
+                             hn::Set(d, sphere.error), hn::Set(d, sphere.along_error)});
 }
 
 HWY_INLINE Verdict judge(const GroupSpace& space, const GroupLimits& limits,
                          const GroupSphere& sphere, const ShownSides& shown, std::size_t ray) {
     const Rays d;
     Verdict verdict;
-    const SphereSpan span = sphere_span(space, sphere, ray);
+    const SphereSpan<Rays> span = sphere_span(space, sphere, ray);
     const auto error = hn::Set(d, sphere.error);
     // Arranged so that a NaN rules nothing out.
     verdict.may = ~ray_bits(hn::Lt(span.depth, hn::Neg(error))) & kAllAtOnce;

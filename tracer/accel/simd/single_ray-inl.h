@@ -8,6 +8,7 @@
 
 #include "tracer/accel/passage.h"
 #include "tracer/accel/simd/cone_filter-inl.h"
+#include "tracer/accel/simd/sphere_filter-inl.h"
 #include "tracer/accel/simd/triangle_filter-inl.h"
 #include "tracer/accel/simd/wide_traversal-inl.h"
 
@@ -94,30 +95,19 @@ struct ShapeTrace {
 
     bool operator()(const SphereSetInstance& instance) const {
         const SphereSet& set = passage.scene.sphere_sets[instance.set];
-        return each_primitive([&](std::uint32_t primitive) HWY_ATTR {
+        const SphereFilter filter(passage.local, passage.ray.t_min,
+                                  space->reach(*passage.instance.tree), !passage.instance.identity);
+        return each_element(set, filter, [&](std::uint32_t primitive) HWY_ATTR {
             return offer_sphere(passage, sphere_of(set, primitive), primitive, search);
         });
     }
 
     bool operator()(const ConeSetInstance& instance) const {
         const ConeSet& set = passage.scene.cone_sets[instance.set];
-        const WideBvh& bvh = passage.instance.tree->bvh;
         const ConeFilter filter(passage.local, passage.ray.t_min,
                                 space->reach(*passage.instance.tree), !passage.instance.identity);
-        return each_leaf([&](const WideRef& leaf) HWY_ATTR {
-            const std::span<const std::uint32_t> primitives = indices_of(bvh, leaf);
-            const std::size_t at_once = hn::Lanes(Four());
-            for (std::size_t i = 0; i < primitives.size(); i += at_once) {
-                const auto some = primitives.subspan(i, std::min(at_once, primitives.size() - i));
-                std::uint32_t left = filter.may_hit(set, some, search.limit());
-                for (; left != 0; left &= left - 1) {
-                    const std::uint32_t primitive =
-                        some[static_cast<std::size_t>(std::countr_zero(left))] & ~WideBvh::kLast;
-                    if (offer_cone(passage, cone_of(set, primitive), primitive, search))
-                        return true;
-                }
-            }
-            return false;
+        return each_element(set, filter, [&](std::uint32_t primitive) HWY_ATTR {
+            return offer_cone(passage, cone_of(set, primitive), primitive, search);
         });
     }
 
@@ -182,10 +172,24 @@ private:
             [this]() HWY_ATTR { return search.limit(); }, leaf);
     }
 
-    template <typename Primitive>
-    [[nodiscard]] bool each_primitive(const Primitive& primitive) const {
+    // Calls offer(number) for the elements of a set that the filter lets through.
+    template <typename Set, typename Filter, typename Offer>
+    [[nodiscard]] bool each_element(const Set& set, const Filter& filter,
+                                    const Offer& offer_one) const {
+        const WideBvh& bvh = passage.instance.tree->bvh;
         return each_leaf([&](const WideRef& leaf) HWY_ATTR {
-            return each_index(passage.instance.tree->bvh, leaf, primitive);
+            const std::span<const std::uint32_t> primitives = indices_of(bvh, leaf);
+            constexpr std::size_t kMost = Filter::kAtOnce;
+            for (std::size_t i = 0; i < primitives.size(); i += kMost) {
+                const auto some = primitives.subspan(i, std::min(kMost, primitives.size() - i));
+                std::uint32_t left = filter.may_hit(set, some, search.limit());
+                for (; left != 0; left &= left - 1) {
+                    const std::uint32_t index =
+                        some[static_cast<std::size_t>(std::countr_zero(left))];
+                    if (offer_one(index & ~WideBvh::kLast)) return true;
+                }
+            }
+            return false;
         });
     }
 };

@@ -1,0 +1,78 @@
+// Where rays enter and leave spheres, in float with bounds on the rounding errors. Included once
+// for each instruction set.
+#if defined(RAYPICK_SPHERE_BOUNDS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYPICK_SPHERE_BOUNDS_INL_H
+#undef RAYPICK_SPHERE_BOUNDS_INL_H
+#else
+#define RAYPICK_SPHERE_BOUNDS_INL_H
+#endif
+
+#include <limits>
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace raypick::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Rays and spheres side by side, a lane each, with what bounds the errors: see SphereSpan.
+template <class V>
+struct SphereLanes {
+    V from_x, from_y, from_z;  // from the centre to the ray's origin
+    V x, y, z;                 // the ray's direction
+    V squared_radius;
+    V error;        // of r^2 - q.q: E
+    V along_error;  // of t |d|, and of half a chord besides E's part
+};
+
+// With f from the centre to the origin, a ray is nearest to the centre at t = -f.d / d.d, at the
+// point q = f + t d, and within for half a chord of sqrt((r^2 - q.q) / d.d). In float (u = 2^-24),
+// with components of f of at most F, those of t d are at most 1.8 F, q's are wrong by less than 32
+// u F, and r^2 - q.q where q is not longer than about r by less than E = 192 u F (r + 32 u F) + 8 u
+// r^2.
+template <class D, class V = hn::Vec<D>>
+struct SphereSpan {
+    V depth;  // r^2 - q.q: above 0 within
+    V enter;  // these two are wrong by `error` at most
+    V leave;
+    V error;
+
+    HWY_INLINE explicit SphereSpan(const SphereLanes<V>& at) {
+        const D d;
+        const auto squared = hn::MulAdd(at.x, at.x, hn::MulAdd(at.y, at.y, hn::Mul(at.z, at.z)));
+        const auto towards =
+            hn::MulAdd(at.from_x, at.x, hn::MulAdd(at.from_y, at.y, hn::Mul(at.from_z, at.z)));
+        const auto nearest = hn::Neg(hn::Div(towards, squared));
+        const auto qx = hn::MulAdd(nearest, at.x, at.from_x);
+        const auto qy = hn::MulAdd(nearest, at.y, at.from_y);
+        const auto qz = hn::MulAdd(nearest, at.z, at.from_z);
+        depth =
+            hn::NegMulAdd(qx, qx, hn::NegMulAdd(qy, qy, hn::NegMulAdd(qz, qz, at.squared_radius)));
+        const auto length = hn::Sqrt(squared);
+        const auto half = hn::Sqrt(hn::Max(depth, hn::Zero(d)));
+        const auto chord = hn::Div(half, length);
+        enter = hn::Sub(nearest, chord);
+        leave = hn::Add(nearest, chord);
+        // Of the square root: E / half a chord, and sqrt(2 E) at most.
+        const auto of_root =
+            hn::Min(hn::Div(at.error, half), hn::Sqrt(hn::Add(at.error, at.error)));
+        error = hn::Div(hn::Add(of_root, at.along_error), length);
+    }
+};
+
+// Of the reach F and the radius.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void set_sphere_errors(D d, V reach, V radius, SphereLanes<V>& to) {
+    constexpr float kUnit = 0x1p-24f;
+    const auto tiny = hn::Set(d, 16.0f * std::numeric_limits<float>::min());
+    to.squared_radius = hn::Mul(radius, radius);
+    const auto of_reach = hn::Mul(hn::Set(d, 192.0f * kUnit), reach);
+    to.error = hn::MulAdd(of_reach, hn::MulAdd(hn::Set(d, 32.0f * kUnit), reach, radius),
+                          hn::MulAdd(hn::Set(d, 8.0f * kUnit), to.squared_radius, tiny));
+    to.along_error = hn::MulAdd(hn::Set(d, 48.0f * kUnit), hn::Add(reach, radius), tiny);
+}
+
+}  // namespace raypick::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard

@@ -1,0 +1,104 @@
+// Spheres that a ray surely misses, several at a time: see sphere_bounds-inl.h. Included once for
+// each instruction set.
+#if defined(RAYPICK_SPHERE_FILTER_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYPICK_SPHERE_FILTER_INL_H
+#undef RAYPICK_SPHERE_FILTER_INL_H
+#else
+#define RAYPICK_SPHERE_FILTER_INL_H
+#endif
+
+#include "tracer/accel/simd/sphere_bounds-inl.h"
+#include "tracer/bvh/wide_bvh.h"
+#include "tracer/scene/scene.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+HWY_BEFORE_NAMESPACE();
+namespace raypick::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+class SphereFilter {
+public:
+    using Spheres = hn::CappedTag<float, 8>;
+    static constexpr std::size_t kAtOnce = hn::MaxLanes(Spheres());
+
+    // `reach` is the largest coordinate of the ray's origin and of the spheres, `rounded` says that
+    // the origin was rounded to float.
+    SphereFilter(const ObjectRay& ray, float t_min, float reach, bool rounded)
+        : origin_(ray.origin),
+          direction_(ray.direction),
+          t_min_(t_min),
+          rounding_(rounded ? reach : 0.0f) {
+        const glm::vec3 along = glm::abs(direction_);
+        const float steepest = std::max({along.x, along.y, along.z});
+        // Beyond it products overflow, or bounds don't hold: then nothing is ruled out.
+        idle_ = !(reach < 1e11f && steepest > 1e-6f && steepest < 1e6f);
+    }
+
+    // Of as many spheres as one instruction takes at most those that the ray may hit at a t of at
+    // most `limit`, as a mask.
+    HWY_INLINE std::uint32_t may_hit(const SphereSet& set,
+                                     std::span<const std::uint32_t> primitives, float limit) const {
+        const std::uint32_t all = (1u << primitives.size()) - 1u;
+        if (idle_) return all;
+        const Spheres d;
+        const SphereLanes<Floats> at = lanes(set, primitives);
+        const SphereSpan<Spheres> span(at);
+        const auto grow = hn::Set(d, 1.0f + 0x1p-21f);
+        const auto shrink = hn::Set(d, 1.0f - 0x1p-21f);
+        // Arranged so that a NaN rules nothing out.
+        const auto beside = hn::Lt(span.depth, hn::Neg(at.error));
+        const auto beyond =
+            hn::Gt(hn::Sub(span.enter, span.error), hn::Mul(hn::Set(d, limit), grow));
+        const auto before =
+            hn::Lt(hn::Add(span.leave, span.error), hn::Mul(hn::Set(d, t_min_), shrink));
+        std::uint8_t stored[8] = {};
+        hn::StoreMaskBits(d, hn::Or(beside, hn::Or(beyond, before)), stored);
+        return all & ~std::uint32_t{stored[0]};
+    }
+
+private:
+    using Floats = hn::Vec<Spheres>;
+
+    HWY_INLINE SphereLanes<Floats> lanes(const SphereSet& set,
+                                         std::span<const std::uint32_t> primitives) const {
+        const Spheres d;
+        HWY_ALIGN std::array<glm::vec4, kAtOnce> rows;
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            const std::uint32_t primitive = primitives[std::min(i, primitives.size() - 1)];
+            rows[i] = set.spheres[primitive & ~WideBvh::kLast];
+        }
+        Floats x;
+        Floats y;
+        Floats z;
+        Floats radius;
+        hn::LoadInterleaved4(d, &rows[0].x, x, y, z, radius);
+        SphereLanes<Floats> at;
+        at.from_x = hn::Sub(hn::Set(d, origin_.x), x);
+        at.from_y = hn::Sub(hn::Set(d, origin_.y), y);
+        at.from_z = hn::Sub(hn::Set(d, origin_.z), z);
+        at.x = hn::Set(d, direction_.x);
+        at.y = hn::Set(d, direction_.y);
+        at.z = hn::Set(d, direction_.z);
+        const auto farthest =
+            hn::Max(hn::Max(hn::Abs(at.from_x), hn::Abs(at.from_y)), hn::Abs(at.from_z));
+        set_sphere_errors(d, hn::Add(farthest, hn::Set(d, rounding_)), radius, at);
+        return at;
+    }
+
+    glm::vec3 origin_, direction_;
+    float t_min_;
+    float rounding_;
+    bool idle_ = false;
+};
+
+}  // namespace raypick::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard
