@@ -1,5 +1,7 @@
 #include "tracer/accel/shape_surfaces.h"
 
+#include "tracer/accel/lane_rows.h"
+
 #include <limits>
 #include <span>
 #include <variant>
@@ -24,17 +26,9 @@ namespace {
 HWY_INLINE DoubleVector number(double x) {
     return hn::Set(Doubles(), x);
 }
-HWY_INLINE DoubleVector3 size(const DoubleVector3& a) {
-    return {hn::Abs(a.x), hn::Abs(a.y), hn::Abs(a.z)};
-}
 HWY_INLINE DoubleVector largest(const DoubleVector3& a) {
     const DoubleVector3 s = size(a);
     return larger(larger(s.x, s.y), s.z);
-}
-HWY_INLINE DoubleVector3 cross(const DoubleVector3& a, const DoubleVector3& b) {
-    return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)),
-            hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
-            hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
 }
 // Of std.
 HWY_INLINE DoubleVector clamp(DoubleVector x, DoubleVector low, DoubleVector high) {
@@ -181,9 +175,7 @@ std::span<ShapeSurfaces::Block> used(std::vector<ShapeSurfaces::Block>& blocks, 
 }
 
 void put(double* in, std::size_t row, const glm::dvec3& v) {
-    in[row * ShapeSurfaces::kLanes] = v.x;
-    in[(row + 1) * ShapeSurfaces::kLanes] = v.y;
-    in[(row + 2) * ShapeSurfaces::kLanes] = v.z;
+    put_vector<ShapeSurfaces::kLanes>(in, row, v);
 }
 
 void put_shape(double* in, const Scene& scene, const Shape& shape, std::uint32_t primitive) {
@@ -246,21 +238,12 @@ void ShapeSurfaces::take(const Hits& hits) {
 
 void ShapeSurfaces::take(const Wanted& wanted, const Block& block, std::size_t lane) {
     const float* const out = &block.out[lane];
-    const auto got = [out](std::size_t row, glm::vec3& v) {
-        v.x = out[row * kLanes];
-        v.y = out[(row + 1) * kLanes];
-        v.z = out[(row + 2) * kLanes];
-    };
     SurfacePoint& surface = *wanted.result;
-    got(kPosition, surface.position);
-    got(kError, surface.position_error);
-    got(kNormal, surface.geometric_normal);
-    got(kNormal, surface.shading_normal);
-    surface.uv = wanted.hit->uv;
-    surface.texture_uv = glm::vec2(0.0f);
-    surface.dpdu = surface.dpdv = glm::vec3(0.0f);
-    surface.front_face = wanted.hit->front_face;
-    surface.material = wanted.material;
+    surface.position = vector_at<kLanes>(out, kPosition);
+    surface.position_error = vector_at<kLanes>(out, kError);
+    surface.geometric_normal = vector_at<kLanes>(out, kNormal);
+    surface.shading_normal = vector_at<kLanes>(out, kNormal);
+    set_untextured(*wanted.hit, wanted.material, surface);
 }
 
 }  // namespace raypick

@@ -135,16 +135,12 @@ void set_surface_point(const Scene& scene, const HitObject& at, const Ray& ray, 
     surface.geometric_normal = glm::vec3(place.world_normal(local.geometric_normal));
     surface.shading_normal = local.smooth ? glm::vec3(place.world_normal(local.shading_normal))
                                           : surface.geometric_normal;
-    surface.uv = hit.uv;
-    surface.texture_uv = glm::vec2(0.0f);
-    surface.dpdu = surface.dpdv = glm::vec3(0.0f);
+    set_untextured(hit, at.material, surface);
     if (at.textured) {
         surface.texture_uv = texture_uv(scene, at.object, hit);
         surface.dpdu = glm::vec3(place.world_vector(local.dpdu));
         surface.dpdv = glm::vec3(place.world_vector(local.dpdv));
     }
-    surface.front_face = hit.front_face;
-    surface.material = at.material;
 }
 
 glm::vec2 texture_uv(const Scene& scene, const Object& object, const Hit& hit) {

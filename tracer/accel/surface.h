@@ -43,6 +43,15 @@ struct HitObject {
 void set_surface_point(const Scene& scene, const HitObject& at, const Ray& ray, const Hit& hit,
                        SurfacePoint& surface);
 
+// What a surface that no texture needs has of its hit.
+inline void set_untextured(const Hit& hit, MaterialId material, SurfacePoint& surface) {
+    surface.uv = hit.uv;
+    surface.texture_uv = glm::vec2(0.0f);
+    surface.dpdu = surface.dpdv = glm::vec3(0.0f);
+    surface.front_face = hit.front_face;
+    surface.material = material;
+}
+
 // The next float on the side that `way` points to; x itself if that is 0. What std::nextafter gives
 // by a call.
 inline float next_float(float x, float way) {

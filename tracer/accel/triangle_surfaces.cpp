@@ -1,5 +1,7 @@
 #include "tracer/accel/triangle_surfaces.h"
 
+#include "tracer/accel/lane_rows.h"
+
 #include <algorithm>
 #include <limits>
 #include <variant>
@@ -8,6 +10,8 @@
 #define HWY_TARGET_INCLUDE "tracer/accel/triangle_surfaces.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.
+#include "tracer/accel/simd/triples-inl.h"
+
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -33,34 +37,12 @@ private:
     static constexpr Doubles kDoubles{};
     static constexpr Floats kFloats{};
 
-    struct V3 {
-        V x;
-        V y;
-        V z;
-    };
+    using V3 = Triple<V>;
 
     static HWY_INLINE V number(double x) { return hn::Set(kDoubles, x); }
-    static HWY_INLINE V3 minus(const V3& a, const V3& b) {
-        return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-    }
-    static HWY_INLINE V3 plus(const V3& a, const V3& b) {
-        return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-    }
-    static HWY_INLINE V3 times(V s, const V3& a) {
-        return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
-    }
-    static HWY_INLINE V dot(const V3& a, const V3& b) {
-        return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-    }
-    static HWY_INLINE V3 cross(const V3& a, const V3& b) {
-        return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)),
-                hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
-                hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
-    }
     static HWY_INLINE V3 unit(const V3& a) {
         return times(hn::Div(number(1.0), hn::Sqrt(dot(a, a))), a);
     }
-    static HWY_INLINE V3 size(const V3& a) { return {hn::Abs(a.x), hn::Abs(a.y), hn::Abs(a.z)}; }
     static HWY_INLINE V largest(const V3& a) {
         const V3 s = size(a);
         return hn::Max(hn::Max(s.x, s.y), s.z);
@@ -192,11 +174,7 @@ void TriangleSurfaces::add(const Scene& scene, const HitObject& at, const Ray& r
         wanted_.resize(kLanes * blocks_.size());
     }
     float* const in = &blocks_[count_ / kLanes].in[count_ % kLanes];
-    const auto put = [in](std::size_t row, const glm::vec3& v) {
-        in[row * kLanes] = v.x;
-        in[(row + 1) * kLanes] = v.y;
-        in[(row + 2) * kLanes] = v.z;
-    };
+    const auto put = [in](std::size_t row, const glm::vec3& v) { put_vector<kLanes>(in, row, v); };
     const Mesh& mesh = scene.meshes[std::get<MeshInstance>(at.object.shape).mesh];
     const glm::uvec3& corner = mesh.triangles[hit.primitive];
     const bool smooth = !mesh.normals.empty();
@@ -236,21 +214,12 @@ void TriangleSurfaces::find(const Scene& scene) {
 
 void TriangleSurfaces::take(const Wanted& wanted, const Block& block, std::size_t lane) {
     const float* const out = &block.out[lane];
-    const auto got = [out](std::size_t row, glm::vec3& v) {
-        v.x = out[row * kLanes];
-        v.y = out[(row + 1) * kLanes];
-        v.z = out[(row + 2) * kLanes];
-    };
     SurfacePoint& surface = *wanted.result;
-    got(kPosition, surface.position);
-    got(kError, surface.position_error);
-    got(kGeometric, surface.geometric_normal);
-    got(kShading, surface.shading_normal);
-    surface.uv = wanted.hit->uv;
-    surface.texture_uv = glm::vec2(0.0f);
-    surface.dpdu = surface.dpdv = glm::vec3(0.0f);
-    surface.front_face = wanted.hit->front_face;
-    surface.material = wanted.material;
+    surface.position = vector_at<kLanes>(out, kPosition);
+    surface.position_error = vector_at<kLanes>(out, kError);
+    surface.geometric_normal = vector_at<kLanes>(out, kGeometric);
+    surface.shading_normal = vector_at<kLanes>(out, kShading);
+    set_untextured(*wanted.hit, wanted.material, surface);
 }
 
 }  // namespace raypick

@@ -9,6 +9,8 @@
 #define HWY_TARGET_INCLUDE "tracer/shade/lit_points.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.
+#include "tracer/accel/simd/triples-inl.h"
+
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -20,33 +22,6 @@ namespace {
 
 using Doubles = hn::CappedTag<double, 8>;
 using Singles = hn::CappedTag<float, LitPoints::kLanes>;
-
-// Operations on triples as glm does them.
-template <class V>
-struct Triple {
-    V x, y, z;
-};
-template <class V>
-HWY_INLINE Triple<V> times(V k, const Triple<V>& a) {
-    return {hn::Mul(k, a.x), hn::Mul(k, a.y), hn::Mul(k, a.z)};
-}
-template <class V>
-HWY_INLINE Triple<V> times(const Triple<V>& a, const Triple<V>& b) {
-    return {hn::Mul(a.x, b.x), hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)};
-}
-template <class V>
-HWY_INLINE Triple<V> plus(const Triple<V>& a, const Triple<V>& b) {
-    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-template <class V>
-HWY_INLINE Triple<V> minus(const Triple<V>& a, const Triple<V>& b) {
-    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-template <class V>
-HWY_INLINE V dot(const Triple<V>& a, const Triple<V>& b) {
-    const Triple<V> each = times(a, b);
-    return hn::Add(hn::Add(each.x, each.y), each.z);
-}
 
 template <class D>
 HWY_INLINE Triple<hn::Vec<D>> same(D d, const glm::vec<3, hn::TFromD<D>>& v) {
@@ -242,10 +217,7 @@ HWY_EXPORT(gather_light);
 namespace {
 
 void put(LitPoints::Block& block, std::size_t lane, std::size_t row, const glm::vec3& v) {
-    float* const to = &block.row[row * LitPoints::kLanes + lane];
-    to[0] = v.x;
-    to[LitPoints::kLanes] = v.y;
-    to[2 * LitPoints::kLanes] = v.z;
+    put_vector<LitPoints::kLanes>(&block.row[lane], row, v);
 }
 
 void put(LitPoints::Block& block, std::size_t lane, const LightSample& light) {
@@ -310,11 +282,8 @@ std::size_t LitPoints::take_shadow_rays(std::span<Ray> rays,
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
             const float* const row = &block.row[lane];
             Ray& ray = rays[taken];
-            for (int k = 0; k < 3; ++k) {
-                const auto axis = static_cast<std::size_t>(k);
-                ray.origin[k] = row[(kOutside + axis) * kLanes];
-                ray.direction[k] = row[(kToLight + axis) * kLanes];
-            }
+            ray.origin = vector_at<kLanes>(row, kOutside);
+            ray.direction = vector_at<kLanes>(row, kToLight);
             ray.t_min = 0.0f;
             ray.t_max = shadow_reach(row[kDistance * kLanes]);
             points[taken++] = first + lane;

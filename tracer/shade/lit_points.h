@@ -1,6 +1,7 @@
 // Ends of rays with the light that falls on them, many at once.
 #pragma once
 
+#include "tracer/accel/lane_rows.h"
 #include "tracer/geometry/ray.h"
 #include "tracer/shade/boundary.h"
 #include "tracer/shade/light_sample.h"
@@ -85,8 +86,7 @@ public:
 
 private:
     [[nodiscard]] glm::vec3 at(std::size_t i, std::size_t first) const {
-        const float* const row = &blocks_[i / kLanes].row[first * kLanes + i % kLanes];
-        return {row[0], row[kLanes], row[2 * kLanes]};
+        return vector_at<kLanes>(&blocks_[i / kLanes].row[i % kLanes], first);
     }
     [[nodiscard]] std::span<Block> used() {
         return std::span(blocks_).first((count_ + kLanes - 1) / kLanes);

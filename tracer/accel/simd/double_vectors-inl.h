@@ -1,5 +1,5 @@
-// Vectors of doubles, and triples of these with the operations of glm and std, in the same order so
-// that not a bit differs. Included once for each instruction set.
+// Vectors of doubles, and triples of these with more operations of glm and std, in the same order
+// so that not a bit differs. Included once for each instruction set.
 #if defined(RAYPICK_DOUBLE_VECTORS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RAYPICK_DOUBLE_VECTORS_INL_H
 #undef RAYPICK_DOUBLE_VECTORS_INL_H
@@ -8,6 +8,7 @@
 #endif
 
 #include "tracer/accel/simd/decide_triangles-inl.h"
+#include "tracer/accel/simd/triples-inl.h"
 
 #include <array>
 #include <cstddef>
@@ -30,27 +31,12 @@ HWY_INLINE DoubleVector load_doubles(const LaneDoubles& numbers) {
     return hn::Load(Doubles(), numbers.data());
 }
 
-// As glm and std do it.
-struct DoubleVector3 {
-    DoubleVector x, y, z;
-};
+using DoubleVector3 = Triple<DoubleVector>;
 HWY_INLINE DoubleVector3 load_doubles(const std::array<LaneDoubles, 3>& numbers) {
     return {load_doubles(numbers[0]), load_doubles(numbers[1]), load_doubles(numbers[2])};
 }
-HWY_INLINE DoubleVector3 plus(const DoubleVector3& a, const DoubleVector3& b) {
-    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-HWY_INLINE DoubleVector3 minus(const DoubleVector3& a, const DoubleVector3& b) {
-    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE DoubleVector3 times(DoubleVector k, const DoubleVector3& a) {
-    return {hn::Mul(k, a.x), hn::Mul(k, a.y), hn::Mul(k, a.z)};
-}
 HWY_INLINE DoubleVector3 over(const DoubleVector3& a, DoubleVector k) {
     return {hn::Div(a.x, k), hn::Div(a.y, k), hn::Div(a.z, k)};
-}
-HWY_INLINE DoubleVector dot(const DoubleVector3& a, const DoubleVector3& b) {
-    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
 HWY_INLINE DoubleVector length(const DoubleVector3& a) {
     return hn::Sqrt(dot(a, a));
