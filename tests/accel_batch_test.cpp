@@ -1,6 +1,7 @@
 // Batches of rays, on every instruction set that this machine has: bit for bit the answers of the
 // same rays one by one, and those of brute force.
 #include "tests/brute_force.h"
+#include "tests/each_instruction_set.h"
 #include "tests/ray_batches.h"
 #include "tests/tracer_scenes.h"
 #include "tracer/accel/accel.h"
@@ -20,11 +21,7 @@ namespace {
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-class AccelBatch : public testing::TestWithParam<std::string> {
-protected:
-    void SetUp() override { use_instruction_set(GetParam()); }
-    void TearDown() override { use_instruction_set(""); }
-};
+class AccelBatch : public OnInstructionSet {};
 
 Scene mixed_scene() {
     Scene scene;
@@ -355,8 +352,7 @@ TEST_P(AccelBatch, OddSizesAndRaysThatAreNone) {
     expect_as_one_by_one(accel_of(Scene{}), rays, {}, Hits::perhaps);
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, AccelBatch, testing::ValuesIn(instruction_sets()),
-                         [](const auto& set) { return set.param; });
+RAYPICK_ON_EACH_INSTRUCTION_SET(AccelBatch);
 
 TEST(InstructionSets, AreNamedAndCheckedAlways) {
     ASSERT_FALSE(instruction_sets().empty());

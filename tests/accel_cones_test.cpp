@@ -2,6 +2,7 @@
 // set that this machine has: bit for bit the answers of the same rays one by one, and those of
 // brute force.
 #include "tests/brute_force.h"
+#include "tests/each_instruction_set.h"
 #include "tests/tracer_scenes.h"
 #include "tracer/accel/accel.h"
 #include "tracer/accel/trace_rays.h"
@@ -17,11 +18,7 @@
 namespace raypick {
 namespace {
 
-class AccelCones : public testing::TestWithParam<std::string> {
-protected:
-    void SetUp() override { use_instruction_set(GetParam()); }
-    void TearDown() override { use_instruction_set(""); }
-};
+class AccelCones : public OnInstructionSet {};
 
 struct Twig {
     glm::vec4 base{0.0f};
@@ -195,8 +192,7 @@ TEST_P(AccelCones, OfInstances) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, AccelCones, testing::ValuesIn(instruction_sets()),
-                         [](const auto& set) { return set.param; });
+RAYPICK_ON_EACH_INSTRUCTION_SET(AccelCones);
 
 }  // namespace
 }  // namespace raypick

@@ -1,6 +1,7 @@
 // Scenes that are hard on trees, on every instruction set that this machine has: objects in each
 // other's way, triangles in one place, needles, and rays that float can't hold.
 #include "tests/brute_force.h"
+#include "tests/each_instruction_set.h"
 #include "tests/ray_batches.h"
 #include "tests/tracer_scenes.h"
 #include "tracer/accel/accel.h"
@@ -19,11 +20,7 @@
 namespace raypick {
 namespace {
 
-class AccelCrowds : public testing::TestWithParam<std::string> {
-protected:
-    void SetUp() override { use_instruction_set(GetParam()); }
-    void TearDown() override { use_instruction_set(""); }
-};
+class AccelCrowds : public OnInstructionSet {};
 
 // Every hit along a ray is found exactly once.
 void expect_all_hits(const Accel& accel, const BruteForce& brute, const std::vector<Ray>& rays,
@@ -274,8 +271,7 @@ TEST_P(AccelCrowds, BoxesWithinBoxes) {
     EXPECT_EQ(accel.intersect(rays[0])->primitive, 3600u);
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, AccelCrowds, testing::ValuesIn(instruction_sets()),
-                         [](const auto& set) { return set.param; });
+RAYPICK_ON_EACH_INSTRUCTION_SET(AccelCrowds);
 
 }  // namespace
 }  // namespace raypick

@@ -1,6 +1,8 @@
-// The tree against brute force on real meshes: 100,000 seeded rays.
+// The tree against brute force on real meshes: 100,000 seeded rays; and batches against rays one by
+// one.
 #include "tests/brute_force.h"
 #include "tests/needs.h"
+#include "tests/ray_batches.h"
 #include "tests/tracer_scenes.h"
 #include "tracer/accel/accel.h"
 #include "tracer/io/load.h"
@@ -64,6 +66,30 @@ void compare(const std::string& file, std::size_t count) {
     EXPECT_GT(tally.hits, static_cast<int>(count / 4)) << "the rays don't test much";
     std::cout << file << ": " << count << " rays, " << tally.hits << " hits, " << tally.ties
               << " decided by the tie rule\n";
+}
+
+// Batches of eye rays and of shadow rays, which one by one are held against brute force below.
+void compare_batches(const std::string& file) {
+    const Accel accel = accel_of(load_scene(model(file)).scene);
+    const std::vector<Ray> rays =
+        coherent_rays(accel.bounds(), {128, 192}, Projection::perspective, 3);
+    expect_as_one_by_one(accel, rays);
+    expect_shadows_as_one_by_one(accel, rays);
+}
+
+TEST(AccelModels, BatchesInTheBunny) {
+    RAYPICK_REQUIRE_MODEL("stanford/bunny_binary.ply");
+    compare_batches("stanford/bunny_binary.ply");
+}
+
+TEST(AccelModels, BatchesInSponza) {
+    RAYPICK_REQUIRE_MODEL("sponza/sponza.obj");
+    compare_batches("sponza/sponza.obj");
+}
+
+TEST(AccelModels, BatchesInTheKitchen) {
+    RAYPICK_REQUIRE_MODEL("bitterli/kitchen.glb");
+    compare_batches("bitterli/kitchen.glb");
 }
 
 TEST(AccelModels, Bunny) {

@@ -1,6 +1,7 @@
 // Shadow rays of one light, which go through the trees backwards, on every instruction set that
 // this machine has: the answers of the same rays one by one and of brute force.
 #include "tests/brute_force.h"
+#include "tests/each_instruction_set.h"
 #include "tests/ray_batches.h"
 #include "tests/tracer_scenes.h"
 #include "tracer/accel/accel.h"
@@ -19,11 +20,7 @@ namespace {
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-class AccelShadows : public testing::TestWithParam<std::string> {
-protected:
-    void SetUp() override { use_instruction_set(GetParam()); }
-    void TearDown() override { use_instruction_set(""); }
-};
+class AccelShadows : public OnInstructionSet {};
 
 // From where eye rays meet the scene, off the surface or right on it, to the light.
 std::vector<Ray> rays_from_surfaces(const Accel& accel, const glm::vec3& light, bool off,
@@ -199,8 +196,7 @@ TEST_P(AccelShadows, OfRaysThatGoElsewhere) {
     expect_as_one_by_one_towards(accel, light, {rays.begin(), rays.begin() + 13});
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, AccelShadows, testing::ValuesIn(instruction_sets()),
-                         [](const auto& set) { return set.param; });
+RAYPICK_ON_EACH_INSTRUCTION_SET(AccelShadows);
 
 }  // namespace
 }  // namespace raypick

@@ -2,20 +2,15 @@
 // set.
 #include "tracer/shade/lit_points.h"
 
+#include "tests/each_instruction_set.h"
+#include "tests/same_surfaces.h"
 #include "tests/tracer_scenes.h"
-#include "tracer/accel/trace_rays.h"
 #include "tracer/shade/lit_point.h"
 
 #include <gtest/gtest.h>
 
-#include <cstring>
-
 namespace raypick {
 namespace {
-
-bool same_bits(const glm::vec3& a, const glm::vec3& b) {
-    return std::memcmp(&a, &b, sizeof(a)) == 0;
-}
 
 // Everything that a ShadingPoint refers to.
 struct End {
@@ -151,11 +146,7 @@ void compare(LitPoints& points, const std::vector<End>& ends, bool shadows) {
     }
 }
 
-class LitPointsBy : public testing::TestWithParam<std::string> {
-protected:
-    LitPointsBy() { use_instruction_set(GetParam()); }
-    ~LitPointsBy() override { use_instruction_set(""); }
-};
+class LitPointsBy : public OnInstructionSet {};
 
 TEST_P(LitPointsBy, AreThoseOfLitPointToTheBit) {
     LitPoints points;
@@ -166,8 +157,7 @@ TEST_P(LitPointsBy, AreThoseOfLitPointToTheBit) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, LitPointsBy, testing::ValuesIn(instruction_sets()),
-                         [](const auto& tested) { return tested.param; });
+RAYPICK_ON_EACH_INSTRUCTION_SET(LitPointsBy);
 
 }  // namespace
 }  // namespace raypick

@@ -1,29 +1,14 @@
 // Many at once against one by one: the same to the bit, for every instruction set.
 #include "tracer/accel/shape_surfaces.h"
 
+#include "tests/each_instruction_set.h"
+#include "tests/same_surfaces.h"
 #include "tests/tracer_scenes.h"
-#include "tracer/accel/trace_rays.h"
 
 #include <gtest/gtest.h>
 
-#include <cstring>
-
 namespace raypick {
 namespace {
-
-bool same_bits(const glm::vec3& a, const glm::vec3& b) {
-    return std::memcmp(&a, &b, sizeof(a)) == 0;
-}
-
-void expect_same(const SurfacePoint& got, const SurfacePoint& wanted) {
-    EXPECT_TRUE(same_bits(got.position, wanted.position));
-    EXPECT_TRUE(same_bits(got.position_error, wanted.position_error));
-    EXPECT_TRUE(same_bits(got.geometric_normal, wanted.geometric_normal));
-    EXPECT_TRUE(same_bits(got.shading_normal, wanted.shading_normal));
-    EXPECT_EQ(got.uv, wanted.uv);
-    EXPECT_EQ(got.front_face, wanted.front_face);
-    EXPECT_EQ(got.material, wanted.material);
-}
 
 // A set of spheres and single ones, some inside of others, and rectangles, some of them smaller
 // than their rims where `away` takes all far from the origin.
@@ -46,37 +31,19 @@ Scene shapes(double scale, const glm::dvec3& away) {
     return scene;
 }
 
-// Works out what `count` rays hit, and returns how many hits there were.
 std::size_t compare(const Accel& accel, ShapeSurfaces& surfaces, std::size_t count) {
-    const Scene& scene = accel.scene();
-    const std::vector<Ray> rays = rays_through(accel.bounds(), 7, count);
-    std::vector<Hit> hits(rays.size());
-    accel.intersect(rays, hits);
-    std::vector<SurfacePoint> got(rays.size());
-    std::size_t met = 0;
     surfaces.clear();
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (!hits[i].valid()) continue;
-        const std::size_t index = object_index(scene, hits[i].object);
-        const HitObject at{scene.objects[index], accel.object_from_world(index), kNoMaterial,
-                           false};
-        const ShapeSurfaces::Kind kind = ShapeSurfaces::kind(at);
-        EXPECT_NE(kind, ShapeSurfaces::Kind::other);
-        surfaces.add(kind, scene, at, rays[i], hits[i], got[i]);
-        ++met;
-    }
-    surfaces.find();
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (hits[i].valid()) expect_same(got[i], surface_point(scene, rays[i], hits[i]));
-    }
-    return met;
+    return compare_surfaces(
+        accel, count,
+        [&](const HitObject& at, const Ray& ray, const Hit& hit, SurfacePoint& surface) {
+            const ShapeSurfaces::Kind kind = ShapeSurfaces::kind(at);
+            EXPECT_NE(kind, ShapeSurfaces::Kind::other);
+            surfaces.add(kind, accel.scene(), at, ray, hit, surface);
+        },
+        [&] { surfaces.find(); });
 }
 
-class ShapeSurfacesBy : public testing::TestWithParam<std::string> {
-protected:
-    ShapeSurfacesBy() { use_instruction_set(GetParam()); }
-    ~ShapeSurfacesBy() override { use_instruction_set(""); }
-};
+class ShapeSurfacesBy : public OnInstructionSet {};
 
 TEST_P(ShapeSurfacesBy, AreThoseOfSurfacePointToTheBit) {
     ShapeSurfaces surfaces;
@@ -90,8 +57,7 @@ TEST_P(ShapeSurfacesBy, AreThoseOfSurfacePointToTheBit) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, ShapeSurfacesBy, testing::ValuesIn(instruction_sets()),
-                         [](const auto& tested) { return tested.param; });
+RAYPICK_ON_EACH_INSTRUCTION_SET(ShapeSurfacesBy);
 
 TEST(ShapeSurfaces, TakesWhatNothingMovesAndNoTextureNeeds) {
     Scene scene;

@@ -5,6 +5,7 @@
 #include <hwy/foreach_target.h>
 
 #include "tests/brute_force.h"
+#include "tests/each_instruction_set.h"
 #include "tests/one_leaf.h"
 #include "tests/tracer_scenes.h"
 #include "tracer/accel/simd/group_boxes-inl.h"
@@ -70,11 +71,7 @@ HWY_EXPORT(rays_filter);
 HWY_EXPORT(sheared_filter);
 HWY_EXPORT(groups_filter);
 
-class TriangleFilters : public testing::TestWithParam<std::string> {
-protected:
-    void SetUp() override { use_instruction_set(GetParam()); }
-    void TearDown() override { use_instruction_set(""); }
-};
+class TriangleFilters : public OnInstructionSet {};
 
 // A few triangles on at most sixteen corners, in a patch of their own.
 struct Patch {
@@ -231,8 +228,7 @@ TEST_P(TriangleFilters, RuleOutWhatIsTooFarAway) {
     expect_rare(idle, rays);
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, TriangleFilters, testing::ValuesIn(instruction_sets()),
-                         [](const auto& set) { return set.param; });
+RAYPICK_ON_EACH_INSTRUCTION_SET(TriangleFilters);
 
 }  // namespace
 }  // namespace raypick

@@ -1,30 +1,14 @@
 // Many at once against one by one: the same to the bit, for every instruction set.
 #include "tracer/accel/triangle_surfaces.h"
 
+#include "tests/each_instruction_set.h"
+#include "tests/same_surfaces.h"
 #include "tests/tracer_scenes.h"
 
 #include <gtest/gtest.h>
 
-#include <hwy/highway.h>
-
-#include <cstring>
-
 namespace raypick {
 namespace {
-
-bool same_bits(const glm::vec3& a, const glm::vec3& b) {
-    return std::memcmp(&a, &b, sizeof(a)) == 0;
-}
-
-void expect_same(const SurfacePoint& got, const SurfacePoint& wanted) {
-    EXPECT_TRUE(same_bits(got.position, wanted.position));
-    EXPECT_TRUE(same_bits(got.position_error, wanted.position_error));
-    EXPECT_TRUE(same_bits(got.geometric_normal, wanted.geometric_normal));
-    EXPECT_TRUE(same_bits(got.shading_normal, wanted.shading_normal));
-    EXPECT_EQ(got.uv, wanted.uv);
-    EXPECT_EQ(got.front_face, wanted.front_face);
-    EXPECT_EQ(got.material, wanted.material);
-}
 
 // Slivers and large ones, flat and smooth, some with normals that point the wrong way.
 Scene triangles(double scale) {
@@ -43,49 +27,30 @@ Scene triangles(double scale) {
     return scene;
 }
 
-// Works out what `count` rays hit, and returns how many hits there were.
 std::size_t compare(const Accel& accel, TriangleSurfaces& surfaces, std::size_t count) {
-    const Scene& scene = accel.scene();
-    const std::vector<Ray> rays = rays_through(accel.bounds(), 7, count);
-    std::vector<Hit> hits(rays.size());
-    accel.intersect(rays, hits);
-    std::vector<SurfacePoint> got(rays.size());
-    std::size_t met = 0;
     surfaces.clear();
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (!hits[i].valid()) continue;
-        const std::size_t index = object_index(scene, hits[i].object);
-        const HitObject at{scene.objects[index], accel.object_from_world(index), kNoMaterial,
-                           false};
-        EXPECT_TRUE(TriangleSurfaces::takes(at));
-        surfaces.add(scene, at, rays[i], hits[i], got[i]);
-        ++met;
-    }
-    surfaces.find(scene);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (hits[i].valid()) expect_same(got[i], surface_point(scene, rays[i], hits[i]));
-    }
-    return met;
+    return compare_surfaces(
+        accel, count,
+        [&](const HitObject& at, const Ray& ray, const Hit& hit, SurfacePoint& surface) {
+            EXPECT_TRUE(TriangleSurfaces::takes(at));
+            surfaces.add(accel.scene(), at, ray, hit, surface);
+        },
+        [&] { surfaces.find(accel.scene()); });
 }
 
-TEST(TriangleSurfaces, AreThoseOfSurfacePointToTheBit) {
-    const std::int64_t supported = hwy::SupportedTargets();
-    for (std::int64_t left = supported; left != 0; left &= left - 1) {
-        const std::int64_t target = left & -left;
-        SCOPED_TRACE(hwy::TargetName(target));
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-        TriangleSurfaces surfaces;
-        for (const double scale : {1e-4, 1.0, 1e5}) {
-            const Accel accel = accel_of(triangles(scale));
-            EXPECT_GT(compare(accel, surfaces, 4000), 2000u);
-            for (const std::size_t count : {0u, 1u, 2u, 3u, 7u, 17u})
-                compare(accel, surfaces, count);
-        }
+class TriangleSurfacesBy : public OnInstructionSet {};
+
+TEST_P(TriangleSurfacesBy, AreThoseOfSurfacePointToTheBit) {
+    TriangleSurfaces surfaces;
+    for (const double scale : {1e-4, 1.0, 1e5}) {
+        const Accel accel = accel_of(triangles(scale));
+        EXPECT_GT(compare(accel, surfaces, 4000), 2000u);
+        for (const std::size_t count : {0u, 1u, 2u, 3u, 7u, 17u})
+            compare(accel, surfaces, count);
     }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
+
+RAYPICK_ON_EACH_INSTRUCTION_SET(TriangleSurfacesBy);
 
 // Coordinates so large beside the triangles that all of these lie within the rim.
 TEST(TriangleSurfaces, NearTheEdgesToo) {
