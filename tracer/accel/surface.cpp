@@ -13,7 +13,7 @@ namespace raypick {
 
 namespace {
 
-double largest(const glm::dvec3& v) {
+double largest_component(const glm::dvec3& v) {
     return std::max({v.x, v.y, v.z});
 }
 
@@ -56,8 +56,8 @@ public:
 
     // The largest of rounding_bound(0, position).
     [[nodiscard]] double largest_rounding_bound(const glm::dvec3& position) const {
-        if (moves_) return largest(rounding_bound(0.0, position));
-        const double size = largest(glm::abs(position));
+        if (moves_) return largest_component(rounding_bound(0.0, position));
+        const double size = largest_component(glm::abs(position));
         return size * 0x1p-24 + size * 0x1p-47;
     }
 

@@ -67,7 +67,8 @@ std::vector<Swap> pair_up(std::span<Run> lefts, std::span<Run> rights) {
 }
 
 // Which runs to swap so that chunks, each partitioned, become one partitioned range.
-std::vector<Swap> join_chunks(std::span<const Sides> chunks, std::size_t refs, std::size_t middle) {
+std::vector<Swap> join_chunks(std::span<const SplitSides> chunks, std::size_t refs,
+                              std::size_t middle) {
     std::vector<Run> lefts;   // of the left side's refs behind the middle
     std::vector<Run> rights;  // of the right side's refs before it
     for (std::size_t i = 0; i < chunks.size(); ++i) {
@@ -80,13 +81,13 @@ std::vector<Swap> join_chunks(std::span<const Sides> chunks, std::size_t refs, s
     return pair_up(lefts, rights);
 }
 
-Sides partition_parallel(std::span<BoxRef> refs, const Binning& binning, const Split& split,
-                         const BvhOptions& options) {
-    std::vector<Sides> chunks(chunks_of(refs.size()));
+SplitSides partition_parallel(std::span<BoxRef> refs, const Binning& binning, const Split& split,
+                              const BvhOptions& options) {
+    std::vector<SplitSides> chunks(chunks_of(refs.size()));
     for_chunks(chunks.size(), options,
                [&](std::size_t i) { chunks[i] = partition(chunk_of(refs, i), binning, split); });
-    Sides all;
-    for (const Sides& chunk : chunks) {
+    SplitSides all;
+    for (const SplitSides& chunk : chunks) {
         all.left += chunk.left;
         all.left_centres.extend(chunk.left_centres);
         all.right_centres.extend(chunk.right_centres);
@@ -101,7 +102,7 @@ Sides partition_parallel(std::span<BoxRef> refs, const Binning& binning, const S
 
 }  // namespace
 
-Division divided(const Bins& bins, const Split& split, const Sides& sides) {
+Division divided(const Bins& bins, const Split& split, const SplitSides& sides) {
     return {sides.left,
             {bins.box(split.axis, 0, split.bin), sides.left_centres},
             {bins.box(split.axis, split.bin, bins.size()), sides.right_centres}};

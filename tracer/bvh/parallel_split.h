@@ -18,7 +18,7 @@ struct Division {
 };
 
 // What `sides` gave, with the boxes that the bins know.
-Division divided(const Bins& bins, const Split& split, const Sides& sides);
+Division divided(const Bins& bins, const Split& split, const SplitSides& sides);
 
 Division halve_range(std::span<BoxRef> refs, const RefBounds& bounds);
 

@@ -66,7 +66,7 @@ public:
         left_.extend_by_known(left);
         right_.extend_by_known(right);
     }
-    [[nodiscard]] Sides sides(std::size_t left) const {
+    [[nodiscard]] SplitSides sides(std::size_t left) const {
         return {left, {left_.min, left_.max}, {right_.min, right_.max}};
     }
 
@@ -83,7 +83,7 @@ private:
 
 // Lomuto's scheme without branches: which side a box falls on can't be foretold.
 template <int kAxis>
-Sides partition_along(std::span<BoxRef> refs, const Binning& binning, int bin) {
+SplitSides partition_along(std::span<BoxRef> refs, const Binning& binning, int bin) {
     const Float4 threshold = all4(static_cast<float>(bin));
     CentresOfSides centres;
     std::size_t left = 0;
@@ -178,7 +178,7 @@ Split best_split(const Bins& bins, const Binning& binning, const LeafCosts& cost
     return best;
 }
 
-Sides partition(std::span<BoxRef> refs, const Binning& binning, const Split& split) {
+SplitSides partition(std::span<BoxRef> refs, const Binning& binning, const Split& split) {
     if (split.axis == 0) return partition_along<0>(refs, binning, split.bin);
     if (split.axis == 1) return partition_along<1>(refs, binning, split.bin);
     return partition_along<2>(refs, binning, split.bin);

@@ -86,14 +86,14 @@ inline float blocks_of(std::uint32_t count, const LeafCosts& costs) {
 }
 
 // A range after a split: refs of the left side first.
-struct Sides {
+struct SplitSides {
     std::size_t left = 0;  // refs of the left side
     Box4 left_centres;
     Box4 right_centres;
 };
 
 // Reorders the refs. The order within a side depends on the refs alone.
-Sides partition(std::span<BoxRef> refs, const Binning& binning, const Split& split);
+SplitSides partition(std::span<BoxRef> refs, const Binning& binning, const Split& split);
 
 // Equal halves by centre along the longest axis: for boxes that no bin tells apart.
 std::size_t halve(std::span<BoxRef> refs, const Box4& twice_centres);

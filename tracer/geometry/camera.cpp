@@ -1,6 +1,7 @@
 #include "tracer/geometry/camera.h"
 
 #include "tracer/error.h"
+#include "tracer/geometry/finite.h"
 
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
@@ -19,10 +20,6 @@ namespace {
 double image_height(const Camera& camera) {
     if (camera.projection == Projection::orthographic) return camera.height;
     return 2.0 * std::tan(glm::radians(camera.fovy) / 2);
-}
-
-bool all_finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 // Of the bounds' box, opposite ones first and last; of the unit cube's if they are empty.

@@ -87,6 +87,8 @@ struct Part {
     std::uint32_t first = 0;
     std::uint32_t count = 0;
     MaterialId material = kNoMaterial;
+
+    friend bool operator==(const Part&, const Part&) = default;
 };
 
 // Vertex arrays that a Mesh may own.

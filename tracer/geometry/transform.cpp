@@ -1,5 +1,6 @@
 #include "tracer/geometry/transform.h"
 
+#include "tracer/geometry/finite.h"
 #include "tracer/geometry/rounding.h"
 
 #include <glm/geometric.hpp>
@@ -10,14 +11,6 @@
 #include <cmath>
 
 namespace raypick {
-
-namespace {
-
-bool all_finite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-}  // namespace
 
 bool Transform::is_identity() const {
     return *this == Transform{};

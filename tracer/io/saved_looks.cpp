@@ -1,6 +1,7 @@
 // What scene_looks.h reads: textures, materials, the environment.
 #include "tracer/io/saved_members.h"
 #include "tracer/io/saved_values.h"
+#include "tracer/io/scene_looks.h"
 
 #include <array>
 
@@ -8,10 +9,7 @@ namespace raypick {
 
 namespace {
 
-// By MapSlot, and by the values of the enumerations.
-constexpr std::array<const char*, kMapSlots> kSlotNames{"diffuse",  "specular", "shininess",
-                                                        "reflect",  "transmit", "opacity",
-                                                        "emissive", "normal",   "ambient"};
+// By the values of the enumerations.
 constexpr std::array<const char*, 3> kCodingNames{"srgb", "linear", "logarithmic"};
 constexpr std::array<const char*, 3> kWrapNames{"repeat", "clamp", "mirror"};
 constexpr std::array<const char*, 3> kReflectanceNames{"constant", "dielectric", "conductor"};

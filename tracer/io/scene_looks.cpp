@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include <array>
 #include <utility>
 
 namespace raypick {
@@ -18,11 +17,6 @@ namespace {
 constexpr NumberRule kTexels{1.0, 65536.0, true, "a whole number from 1 to 65536"};
 constexpr NumberRule kChannel{0.0, 3.0, true, "a channel: 0, 1, 2 or 3"};
 constexpr NumberRule kPriority{-1e9, 1e9, true, "a whole number between -1e9 and 1e9"};
-
-// By MapSlot.
-const std::array<std::string_view, kMapSlots> kSlotNames{"diffuse",  "specular", "shininess",
-                                                         "reflect",  "transmit", "opacity",
-                                                         "emissive", "normal",   "ambient"};
 
 void warn(const JsonValue& value, const ImageFolder& images, const Error& error,
           std::string_view instead) {

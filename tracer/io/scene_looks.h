@@ -9,11 +9,18 @@
 #include "tracer/scene/material.h"
 #include "tracer/scene/texture.h"
 
+#include <array>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace raypick {
+
+// By MapSlot.
+inline constexpr std::array<std::string_view, kMapSlots> kSlotNames{
+    "diffuse", "specular", "shininess", "reflect", "transmit",
+    "opacity", "emissive", "normal",    "ambient"};
 
 // Where image files are looked for, and where it is said that they are missing.
 struct ImageFolder {

@@ -20,8 +20,8 @@ namespace {
 constexpr int kFormat = 0x22;
 constexpr int kProfile = 0x33;
 constexpr int kCoreProfile = 0x34;
-constexpr int kContextMajorVersion = 0x36;
-constexpr int kContextMinorVersion = 0x37;
+constexpr int kOsmesaMajorVersion = 0x36;
+constexpr int kOsmesaMinorVersion = 0x37;
 constexpr int kRgba = 0x1908;
 
 }  // namespace
@@ -35,8 +35,7 @@ OsmesaContext::OsmesaContext() {
     const auto get_proc_address = library.function<GLADloadfunc>("OSMesaGetProcAddress");
     destroy_ = library.function<Destroy>("OSMesaDestroyContext");
     const int attributes[] = {
-        kFormat, kRgba, kProfile, kCoreProfile, kContextMajorVersion, 3, kContextMinorVersion,
-        3,       0};
+        kFormat, kRgba, kProfile, kCoreProfile, kOsmesaMajorVersion, 3, kOsmesaMinorVersion, 3, 0};
     context_ = create(attributes, nullptr);
     if (context_ == nullptr) throw NoOpenGL("it gives no OpenGL 3.3 core context");
     if (make_current(context_, pixel_, GL_UNSIGNED_BYTE, 1, 1) == 0) {

@@ -15,10 +15,6 @@ bool same_array(std::span<const T> a, std::span<const T> b) {
     return a.data() == b.data() && a.size() == b.size();
 }
 
-bool same_part(const Part& a, const Part& b) {
-    return a.first == b.first && a.count == b.count && a.material == b.material;
-}
-
 // A texel for each vertex of the chunk, made from the mesh's `values` by `texel`.
 template <typename Value, typename TexelOf>
 auto chunk_texels(std::span<const Value> values, const MeshChunk& chunk, const TexelOf& texel) {
@@ -98,8 +94,7 @@ GpuMesh::GpuMesh(const Mesh& mesh, std::size_t max_texels) : mesh_(mesh) {
 bool GpuMesh::holds(const Mesh& mesh) const {
     return same_array(mesh_.positions, mesh.positions) && same_array(mesh_.normals, mesh.normals) &&
            same_array(mesh_.uvs, mesh.uvs) && same_array(mesh_.triangles, mesh.triangles) &&
-           std::equal(mesh_.parts.begin(), mesh_.parts.end(), mesh.parts.begin(), mesh.parts.end(),
-                      same_part);
+           mesh_.parts == mesh.parts;
 }
 
 }  // namespace raypick

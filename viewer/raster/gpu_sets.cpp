@@ -45,14 +45,9 @@ std::vector<SetChunk> upload_chunks(std::span<const glm::vec4> texels, std::size
     return chunks;
 }
 
-bool same_part(const Part& a, const Part& b) {
-    return a.first == b.first && a.count == b.count && a.material == b.material;
-}
-
 bool same_arrays(std::span<const glm::vec4> a, std::span<const glm::vec4> b,
                  const std::vector<Part>& a_parts, const std::vector<Part>& b_parts) {
-    return a.data() == b.data() && a.size() == b.size() &&
-           std::equal(a_parts.begin(), a_parts.end(), b_parts.begin(), b_parts.end(), same_part);
+    return a.data() == b.data() && a.size() == b.size() && a_parts == b_parts;
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace raypick {
 
 namespace {
 
-enum class Unit : GLuint { colour, object, selected };
+enum class PresentedUnit : GLuint { colour, object, selected };
 
 // Rows in OpenGL's order.
 template <typename T>
@@ -47,9 +47,9 @@ BufferTexture upload_ids(std::span<const ObjectId> selected) {
 Program make_present_program(std::span<const std::string> defines) {
     Program program = make_program("fullscreen.vert", "present.frag", defines);
     const Uniforms uniforms(program);
-    uniforms.set("colour", static_cast<int>(Unit::colour));
-    uniforms.set("object", static_cast<int>(Unit::object));
-    uniforms.set("selected", static_cast<int>(Unit::selected));
+    uniforms.set("colour", static_cast<int>(PresentedUnit::colour));
+    uniforms.set("object", static_cast<int>(PresentedUnit::object));
+    uniforms.set("selected", static_cast<int>(PresentedUnit::selected));
     glUseProgram(0);
     return program;
 }
@@ -116,9 +116,9 @@ void Presenter::present(unsigned colour_texture, unsigned object_texture, const 
     const BufferTexture ids = upload_ids(selected);
     glActiveTexture(GL_TEXTURE0);
     const ImageSize frame = texture_size(colour_texture);
-    bind_texture(static_cast<GLuint>(Unit::colour), GL_TEXTURE_2D, colour_texture);
-    bind_texture(static_cast<GLuint>(Unit::object), GL_TEXTURE_2D, object_texture);
-    bind_texture(static_cast<GLuint>(Unit::selected), GL_TEXTURE_BUFFER, ids.texture());
+    bind_texture(static_cast<GLuint>(PresentedUnit::colour), GL_TEXTURE_2D, colour_texture);
+    bind_texture(static_cast<GLuint>(PresentedUnit::object), GL_TEXTURE_2D, object_texture);
+    bind_texture(static_cast<GLuint>(PresentedUnit::selected), GL_TEXTURE_BUFFER, ids.texture());
     const bool outlines = !selected.empty() || hovered != kNoObject;
     const Uniforms uniforms(state_->program(outlines));
     uniforms.set("frame_size", glm::ivec2(frame.cols, frame.rows));
