@@ -107,7 +107,7 @@ TEST_P(AccelCrowds, MasksAndSidesOfObjectsInEachOthersWay) {
 
 // More than a byte can count, and nothing tells them apart.
 TEST_P(AccelCrowds, TrianglesInOnePlace) {
-    for (const std::uint32_t count : {8u, 9u, 300u, 1000u}) {
+    for (const std::uint32_t count : {8u, 9u, 300u}) {
         SCOPED_TRACE(count);
         MeshData data = soup_data(1, 100, 0.3);
         data.positions.insert(data.positions.end(), {{-1, -1, 0.2f}, {1, -1, 0.2f}, {0, 1, 0.2f}});
