@@ -108,9 +108,8 @@ inline void expect_shadows_as_one_by_one(const Accel& accel, const std::vector<R
 }
 
 // Batches, rays one by one and brute force agree on rays of every kind.
-inline void expect_all_ways(const Scene& scene, std::uint64_t seed) {
-    const Accel accel = accel_of(scene);
-    const BruteForce brute(scene);
+inline void expect_all_ways(const Accel& accel, std::uint64_t seed) {
+    const BruteForce brute(accel.scene());
     std::vector<Ray> rays = coherent_rays(accel.bounds(), {24, 32}, Projection::perspective, seed);
     for (const Ray& ray : rays_through(accel.bounds(), seed, 300))
         rays.push_back(ray);
@@ -123,6 +122,10 @@ inline void expect_all_ways(const Scene& scene, std::uint64_t seed) {
     for (std::size_t i = 0; i < rays.size(); i += 5) {
         ASSERT_EQ(complaint(accel.intersect(rays[i]), brute.all(rays[i])), "") << to_text(rays[i]);
     }
+}
+
+inline void expect_all_ways(const Scene& scene, std::uint64_t seed) {
+    expect_all_ways(accel_of(scene), seed);
 }
 
 }  // namespace raypick

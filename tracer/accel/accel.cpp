@@ -94,14 +94,41 @@ void open_entries(const AccelState& state, std::vector<PlacedEntry>& entries,
     }
 }
 
+// The joined tree's entry, and what it needs to tell its objects apart.
+void place_joined(AccelState& state, std::vector<PlacedEntry>& entries) {
+    const SceneTrees& trees = state.trees;
+    if (trees.joined == nullptr) return;
+    Bounds box;
+    for (std::size_t i = 0; i < trees.joined_objects.size(); ++i) {
+        const std::uint32_t object = trees.joined_objects[i];
+        const bool there = object != kNobody;
+        state.members.push_back({object, there ? &state.instances[object] : nullptr});
+        if (there) box.extend(trees.joined->bounds[i]);
+    }
+    if (box.empty()) return;
+    state.bounds.extend(box);
+    const PrimitiveTree& tree = trees.joined->tree;
+    Instance joined;
+    joined.tree = &tree;
+    joined.members = state.members;
+    const auto index = static_cast<std::uint32_t>(state.instances.size());
+    state.instances.push_back(joined);
+    entries.push_back({{index, tree.bvh.root}, tree.bvh.bounds});
+}
+
 void place_objects(AccelState& state, const BuildOptions& options) {
     const Scene& scene = *state.scene;
     std::vector<PlacedEntry> entries;
-    state.instances.reserve(scene.objects.size());
-    for (const Object& object : scene.objects) {
+    state.instances.reserve(scene.objects.size() + 1);  // they are pointed to
+    std::vector<bool> joined(scene.objects.size());
+    for (const std::uint32_t object : state.trees.joined_objects) {
+        if (object != kNobody) joined[object] = true;
+    }
+    for (std::uint32_t index = 0; index < scene.objects.size(); ++index) {
         throw_if_stopped(options.stop);
-        const auto index = static_cast<std::uint32_t>(state.instances.size());
+        const Object& object = scene.objects[index];
         state.instances.push_back(instance_of(scene, object, state.trees));
+        if (joined[index]) continue;
         const PrimitiveTree* tree = state.instances.back().tree;
         const Bounds box = instance_bounds(scene, object, tree);
         if (!box.empty()) {
@@ -111,6 +138,7 @@ void place_objects(AccelState& state, const BuildOptions& options) {
             state.unbounded.push_back(index);
         }
     }
+    place_joined(state, entries);
     open_entries(state, entries, options.stop);
     std::vector<Bounds> boxes;
     for (const PlacedEntry& placed : entries) {
@@ -131,14 +159,22 @@ void place_objects(AccelState& state, const BuildOptions& options) {
     }
 }
 
-bool mostly_triangles(const SceneTrees& trees) {
-    const auto primitives = [](const TreeList& list) {
-        std::size_t sum = 0;
-        for (const auto& tree : list)
-            sum += tree->count;
-        return sum;
-    };
-    return primitives(trees.meshes) > primitives(trees.sphere_sets) + primitives(trees.cone_sets);
+struct PrimitiveCounts {
+    std::uint64_t triangles = 0;
+    std::uint64_t spheres = 0;
+    std::uint64_t cones = 0;
+};
+
+// Of unique meshes and sets.
+PrimitiveCounts count_primitives(const Scene& scene) {
+    PrimitiveCounts counts;
+    for (const Mesh& mesh : scene.meshes)
+        counts.triangles += mesh.triangles.size();
+    for (const SphereSet& set : scene.sphere_sets)
+        counts.spheres += set.spheres.size();
+    for (const ConeSet& set : scene.cone_sets)
+        counts.cones += set.size();
+    return counts;
 }
 
 }  // namespace
@@ -151,7 +187,8 @@ Accel::Accel(std::shared_ptr<const Scene> scene, const BuildOptions& options, co
     state->scene = std::move(scene);
     state->trees =
         build_trees(*state->scene, options, reuse != nullptr ? &reuse->state_->trees : nullptr);
-    state->mostly_triangles = mostly_triangles(state->trees);
+    const PrimitiveCounts counts = count_primitives(*state->scene);
+    state->mostly_triangles = counts.triangles > counts.spheres + counts.cones;
     place_objects(*state, options);
     state_ = std::move(state);
 }
@@ -204,16 +241,21 @@ AccelStats Accel::stats() const {
     stats.bytes = state_->top.bytes() + state_->instances.size() * sizeof(Instance) +
                   state_->entries.size() * sizeof(TopEntry);
     stats.nodes = state_->top.nodes.size();
-    const auto count = [&stats](const TreeList& trees, std::uint64_t& primitives) {
-        for (const auto& tree : trees) {
-            primitives += tree->count;
-            stats.nodes += tree->bvh.nodes.size();
-            stats.bytes += tree->bytes();
-        }
+    const auto add = [&stats](const PrimitiveTree& tree) {
+        stats.nodes += tree.bvh.nodes.size();
+        stats.bytes += tree.bytes();
     };
-    count(state_->trees.meshes, stats.triangles);
-    count(state_->trees.sphere_sets, stats.spheres);
-    count(state_->trees.cone_sets, stats.cones);
+    const SceneTrees& trees = state_->trees;
+    for (const TreeList* list : {&trees.meshes, &trees.sphere_sets, &trees.cone_sets}) {
+        for (const auto& tree : *list) {
+            if (tree != nullptr) add(*tree);
+        }
+    }
+    if (trees.joined != nullptr) add(trees.joined->tree);
+    const PrimitiveCounts counts = count_primitives(*state_->scene);
+    stats.triangles = counts.triangles;
+    stats.spheres = counts.spheres;
+    stats.cones = counts.cones;
     return stats;
 }
 

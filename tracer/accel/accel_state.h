@@ -9,29 +9,42 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace raypick {
 
-// An object as rays meet it.
+struct Instance;
+
+// Whose triangles a joined tree holds (see trees.h).
+struct Member {
+    std::uint32_t object = kNobody;  // index; none: they are there no more
+    const Instance* instance = nullptr;
+};
+
+// An object as rays meet it, or the objects that share the joined tree.
 struct Instance {
     Transform object_from_world;
     bool identity = true;
     bool holes = false;  // it may be cut out
     float slop = 0.0f;   // how far rounding may have moved a ray in object space, per unit
     const PrimitiveTree* tree = nullptr;
+    std::span<const Member> members{};  // of the joined tree; else empty
+
+    [[nodiscard]] bool joined() const { return !members.empty(); }
 };
 
-// What the top tree's leaves hold: an object, or a part of one that has a tree.
+// What the top tree's leaves hold: an object, or a part of what has a tree.
 struct TopEntry {
-    std::uint32_t object = 0;
+    std::uint32_t object = 0;  // index of the instance
     WideRef part;
 };
 
 struct AccelState {
     std::shared_ptr<const Scene> scene;
     SceneTrees trees;
-    std::vector<Instance> instances;       // one an object
+    std::vector<Instance> instances;       // one an object, and one of the joined tree
+    std::vector<Member> members;           // of the joined tree
     std::vector<TopEntry> entries;         // of the finite objects
     WideBvh top;                           // over the entries
     std::vector<std::uint32_t> unbounded;  // infinite planes

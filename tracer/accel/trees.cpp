@@ -1,6 +1,6 @@
 #include "tracer/accel/trees.h"
 
-#include "tracer/bvh/float4.h"
+#include "tracer/accel/triangle_box.h"
 #include "tracer/error.h"
 #include "tracer/geometry/rounding.h"
 #include "tracer/parallel/parallel.h"
@@ -9,8 +9,6 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <span>
 #include <utility>
 #include <variant>
@@ -18,30 +16,6 @@
 namespace raypick {
 
 namespace {
-
-// With a fourth lane that means nothing.
-Float4 position(const Mesh& mesh, std::uint32_t vertex) {
-    const glm::vec3* const at = &mesh.positions[vertex];
-    Float4 position{};
-    // All four at once, where there is something behind the three.
-    if (vertex + std::size_t{1} < mesh.positions.size()) {
-        std::memcpy(&position, at, sizeof position);
-    } else {
-        std::memcpy(&position, at, sizeof *at);
-    }
-    return position;
-}
-
-// A triangle with a NaN is never hit: its box stays empty.
-Bounds triangle_box(const Mesh& mesh, std::size_t index) {
-    const glm::uvec3 t = mesh.triangles[index];
-    const Float4 a = position(mesh, t.x);
-    const Float4 b = position(mesh, t.y);
-    const Float4 c = position(mesh, t.z);
-    const Float4 sum = a + b + c;
-    if (!std::isfinite(sum[0] + sum[1] + sum[2])) return {};
-    return Box4{min4(min4(a, b), c), max4(max4(a, b), c)}.bounds();
-}
 
 Bounds sphere_box(const SphereSet& set, std::size_t index) {
     const Sphere sphere = sphere_of(set, static_cast<std::uint32_t>(index));
@@ -57,11 +31,11 @@ Bounds cone_box(const ConeSet& set, std::size_t index) {
 
 // The arrays that a tree is built over, and how many primitives and which boxes they make.
 struct TreeSource {
-    std::array<const void*, 2> arrays{};
+    TreeArrays arrays{};
     std::size_t count = 0;
     BoxSource boxes;
     LeafCosts costs;
-    const Mesh* mesh = nullptr;  // whose triangles go into patches
+    std::shared_ptr<const JoinedMeshes> meshes = nullptr;  // whose triangles go into patches
 };
 
 template <typename BoxOf>
@@ -72,12 +46,22 @@ BoxSource one_by_one(const BoxOf& box_of) {
     };
 }
 
+TreeSource source_of(std::vector<const Mesh*> several) {
+    auto meshes = std::make_shared<const JoinedMeshes>(std::move(several));
+    const auto boxes = [meshes](std::size_t first, std::span<Bounds> wanted) {
+        std::size_t member = meshes->member_of(first);
+        for (std::size_t i = first; i < first + wanted.size(); ++i) {
+            if (i >= meshes->first(member + 1)) ++member;
+            wanted[i - first] = triangle_box(meshes->mesh(member), i - meshes->first(member));
+        }
+    };
+    return {{}, meshes->triangles(), boxes, kWideSurfaceLeaves, meshes};
+}
+
 TreeSource source_of(const Mesh& mesh) {
-    return {{mesh.positions.data(), mesh.triangles.data()},
-            mesh.triangles.size(),
-            one_by_one([&mesh](std::size_t i) { return triangle_box(mesh, i); }),
-            kWideSurfaceLeaves,
-            &mesh};
+    TreeSource source = source_of(std::vector<const Mesh*>{&mesh});
+    source.arrays = arrays_of(mesh);
+    return source;
 }
 
 TreeSource source_of(const SphereSet& set) {
@@ -97,14 +81,13 @@ TreeSource source_of(const ConeSet& set) {
 std::shared_ptr<const PrimitiveTree> find_tree(const TreeList& known, const TreeSource& source,
                                                TreeQuality quality) {
     const auto found = std::find_if(known.begin(), known.end(), [&](const auto& tree) {
-        return tree->arrays == source.arrays && tree->count == source.count &&
+        return tree != nullptr && tree->arrays == source.arrays && tree->count == source.count &&
                tree->quality >= quality;
     });
     return found != known.end() ? *found : nullptr;
 }
 
-std::shared_ptr<const PrimitiveTree> build_tree(const TreeSource& source,
-                                                const BuildOptions& options, int threads) {
+PrimitiveTree build_tree(const TreeSource& source, const BuildOptions& options, int threads) {
     PrimitiveTree tree;
     tree.arrays = source.arrays;
     tree.count = source.count;
@@ -114,44 +97,110 @@ std::shared_ptr<const PrimitiveTree> build_tree(const TreeSource& source,
                          ? build_bvh_fast(source.count, source.boxes, how)
                          : build_bvh(source.count, source.boxes, how),
                      threads, options.stop);
-    if (source.mesh != nullptr) {
-        tree.patches = take_triangles(tree.bvh, *source.mesh, threads, options.stop);
+    if (source.meshes != nullptr) {
+        tree.patches = take_triangles(tree.bvh, *source.meshes, threads, options.stop);
     }
     const Bounds& box = tree.bvh.bounds;
     const glm::vec3 farthest = glm::max(glm::abs(box.min), glm::abs(box.max));
     tree.reach = std::max({farthest.x, farthest.y, farthest.z});
-    return std::make_shared<const PrimitiveTree>(std::move(tree));
+    return tree;
 }
 
-// Small trees side by side, each on one thread; then large ones, each on all.
+// Those that `trees` lacks: small ones side by side, each on one thread; then large ones, each on
+// all.
 void build_missing(TreeList& trees, std::span<const TreeSource> sources,
                    const BuildOptions& options) {
     constexpr std::size_t kSmall = 1u << 14;
+    const auto build = [&](std::size_t i, int threads) {
+        trees[i] = std::make_shared<const PrimitiveTree>(build_tree(sources[i], options, threads));
+    };
     std::vector<std::size_t> small;
+    std::vector<std::size_t> large;
     for (std::size_t i = 0; i < sources.size(); ++i) {
-        if (trees[i] == nullptr && sources[i].count <= kSmall) small.push_back(i);
+        if (trees[i] == nullptr) (sources[i].count <= kSmall ? small : large).push_back(i);
     }
-    parallel_for(small.size(), options.threads, options.stop, [&](std::size_t i) {
-        trees[small[i]] = build_tree(sources[small[i]], options, 1);
-    });
+    parallel_for(small.size(), options.threads, options.stop,
+                 [&](std::size_t i) { build(small[i], 1); });
     if (options.stop.stop_requested()) throw Cancelled();
-    for (std::size_t i = 0; i < sources.size(); ++i) {
-        if (trees[i] == nullptr) trees[i] = build_tree(sources[i], options, options.threads);
-    }
+    for (const std::size_t i : large)
+        build(i, options.threads);
 }
 
-// One tree for each mesh or set of `things`.
+// One tree for each mesh or set of `things`, but for those `without` one.
 template <typename Things>
-TreeList build_list(const Things& things, const BuildOptions& options, const TreeList* known) {
+TreeList build_list(const Things& things, const BuildOptions& options, const TreeList* known,
+                    const std::vector<bool>& without = {}) {
     std::vector<TreeSource> sources;
-    TreeList trees;
-    for (const auto& thing : things) {
-        sources.push_back(source_of(thing));
-        trees.push_back(known != nullptr ? find_tree(*known, sources.back(), options.quality)
+    std::vector<std::size_t> places;
+    TreeList found;
+    for (std::size_t i = 0; i < things.size(); ++i) {
+        if (!without.empty() && without[i]) continue;
+        places.push_back(i);
+        sources.push_back(source_of(things[i]));
+        found.push_back(known != nullptr ? find_tree(*known, sources.back(), options.quality)
                                          : nullptr);
     }
-    build_missing(trees, sources, options);
+    build_missing(found, sources, options);
+    TreeList trees(things.size());
+    for (std::size_t i = 0; i < places.size(); ++i)
+        trees[places[i]] = std::move(found[i]);
     return trees;
+}
+
+std::shared_ptr<const JoinedTree> join_meshes(const Scene& scene, const BuildOptions& options) {
+    std::vector<const Mesh*> meshes;
+    JoinedTree joined;
+    for (const JoinableMesh& joinable : joinable_meshes(scene, options)) {
+        meshes.push_back(joinable.mesh);
+        joined.members.push_back(arrays_of(*joinable.mesh));
+        joined.bounds.push_back(joinable.bounds);
+    }
+    if (meshes.empty()) return nullptr;
+    joined.tree = build_tree(source_of(std::move(meshes)), options, options.threads);
+    return std::make_shared<const JoinedTree>(std::move(joined));
+}
+
+// Whether most triangles of a joined tree are still there.
+bool still_pays(const JoinedTree& joined, const Scene& scene,
+                const std::vector<std::uint32_t>& objects) {
+    std::size_t there = 0;
+    for (const std::uint32_t object : objects) {
+        if (object == kNobody) continue;
+        const auto& instance = std::get<MeshInstance>(scene.objects[object].shape);
+        there += scene.meshes[instance.mesh].triangles.size();
+    }
+    return there > joined.tree.count / 2;
+}
+
+void set_joined(SceneTrees& trees, const Scene& scene, const BuildOptions& options,
+                const SceneTrees* reuse) {
+    if (options.quality != TreeQuality::many_rays) return;
+    if (reuse != nullptr && reuse->joined != nullptr) {
+        trees.joined_objects = objects_of_members(scene, reuse->joined->members);
+        if (still_pays(*reuse->joined, scene, trees.joined_objects)) {
+            trees.joined = reuse->joined;
+            return;
+        }
+    }
+    trees.joined = join_meshes(scene, options);
+    trees.joined_objects.clear();
+    if (trees.joined == nullptr) return;
+    trees.joined_objects = objects_of_members(scene, trees.joined->members);
+}
+
+// By mesh: whether all its objects stand in the joined tree.
+std::vector<bool> meshes_joined(const Scene& scene, const SceneTrees& trees) {
+    std::vector<std::uint32_t> others(scene.meshes.size());
+    for (const Object& object : scene.objects) {
+        if (const auto* mesh = std::get_if<MeshInstance>(&object.shape)) ++others[mesh->mesh];
+    }
+    std::vector<bool> joined(scene.meshes.size());
+    for (const std::uint32_t object : trees.joined_objects) {
+        if (object == kNobody) continue;
+        const MeshId mesh = std::get<MeshInstance>(scene.objects[object].shape).mesh;
+        joined[mesh] = --others[mesh] == 0;
+    }
+    return joined;
 }
 
 }  // namespace
@@ -160,9 +209,13 @@ SceneTrees build_trees(const Scene& scene, const BuildOptions& options, const Sc
     const auto known = [reuse](TreeList SceneTrees::*list) {
         return reuse != nullptr ? &(reuse->*list) : nullptr;
     };
-    return {build_list(scene.meshes, options, known(&SceneTrees::meshes)),
-            build_list(scene.sphere_sets, options, known(&SceneTrees::sphere_sets)),
-            build_list(scene.cone_sets, options, known(&SceneTrees::cone_sets))};
+    SceneTrees trees;
+    set_joined(trees, scene, options, reuse);
+    trees.meshes =
+        build_list(scene.meshes, options, known(&SceneTrees::meshes), meshes_joined(scene, trees));
+    trees.sphere_sets = build_list(scene.sphere_sets, options, known(&SceneTrees::sphere_sets));
+    trees.cone_sets = build_list(scene.cone_sets, options, known(&SceneTrees::cone_sets));
+    return trees;
 }
 
 const PrimitiveTree* tree_of(const SceneTrees& trees, const Shape& shape) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cstring>
 #include <span>
 #include <stdexcept>
@@ -21,10 +22,11 @@ using Blocks = LargeArray<TrianglePatches::Block>;
 class PatchMaker {
 public:
     // Of the first eight primitives at most.
-    PatchMaker(const Mesh& mesh, std::span<const std::uint32_t> primitives) {
+    PatchMaker(const Mesh& mesh, std::size_t member, std::span<const std::uint32_t> primitives) {
+        patch_.member = static_cast<std::uint16_t>(member & JoinedMeshes::kMostMeshes);
         const std::size_t most = std::min<std::size_t>(primitives.size(), kTriangles);
         for (std::size_t i = 0; i < most; ++i) {
-            primitives_[i] = primitives[i] & ~WideBvh::kLast;
+            primitives_[i] = primitives[i];
             const glm::uvec3 t = mesh.triangles[primitives_[i]];
             for (int k = 0; k < 3; ++k)
                 put_place(3 * i + static_cast<std::size_t>(k), mesh.positions[t[k]]);
@@ -101,32 +103,77 @@ struct Leaf {
     std::span<const std::uint32_t> primitives;
 };
 
-void append_patches(std::span<const std::uint32_t> primitives, const Mesh& mesh, Blocks& blocks) {
-    while (!primitives.empty()) {
-        PatchMaker patch(mesh, primitives);
-        primitives = primitives.subspan(patch.triangles());
-        if (primitives.empty()) patch.finish_leaf();
-        patch.append_to(blocks);
+// A leaf's primitives by member, and numbered as in their meshes.
+class LeafTriangles {
+public:
+    LeafTriangles(std::span<const std::uint32_t> primitives, const JoinedMeshes& meshes)
+        : meshes_(meshes), count_(primitives.size()) {
+        assert(count_ <= numbers_.size());
+        for (std::size_t i = 0; i < count_; ++i)
+            numbers_[i] = primitives[i] & ~WideBvh::kLast;
+        if (meshes.size() > 1) std::sort(numbers_.begin(), numbers_.begin() + count_);
+    }
+
+    // Calls body(member, primitives, last) for the members in turn.
+    template <typename Body>
+    void each_member(const Body& body) {
+        for (std::size_t begin = 0; begin < count_;) {
+            const std::size_t member = meshes_.member_of(numbers_[begin]);
+            const auto first = static_cast<std::uint32_t>(meshes_.first(member));
+            const std::size_t behind = meshes_.first(member + 1);
+            std::size_t end = begin;
+            while (end < count_ && numbers_[end] < behind)
+                numbers_[end++] -= first;
+            body(member, std::span(numbers_).subspan(begin, end - begin), end == count_);
+            begin = end;
+        }
+    }
+
+private:
+    const JoinedMeshes& meshes_;
+    std::size_t count_;
+    std::array<std::uint32_t, kWideSurfaceLeaves.max_leaf> numbers_{};
+};
+
+void append_patches(const Leaf& leaf, const JoinedMeshes& meshes, Blocks& blocks) {
+    LeafTriangles(leaf.primitives, meshes)
+        .each_member([&](std::size_t member, std::span<const std::uint32_t> primitives, bool last) {
+            while (!primitives.empty()) {
+                PatchMaker patch(meshes.mesh(member), member, primitives);
+                primitives = primitives.subspan(patch.triangles());
+                if (last && primitives.empty()) patch.finish_leaf();
+                patch.append_to(blocks);
+            }
+        });
+}
+
+// Calls body(mesh, triangle) for a leaf's triangles.
+template <typename Body>
+void each_triangle(const Leaf& leaf, const JoinedMeshes& meshes, const Body& body) {
+    for (const std::uint32_t primitive : leaf.primitives) {
+        const std::size_t number = primitive & ~WideBvh::kLast;
+        const std::size_t member = meshes.member_of(number);
+        const Mesh& mesh = meshes.mesh(member);
+        body(mesh, mesh.triangles[number - meshes.first(member)]);
     }
 }
 
 // Reads along the leaves' order jump about in the mesh, so the processor is told what comes.
-void fetch_triangles(const Leaf& leaf, const Mesh& mesh) {
-    for (const std::uint32_t primitive : leaf.primitives)
-        __builtin_prefetch(&mesh.triangles[primitive & ~WideBvh::kLast]);
+void fetch_triangles(const Leaf& leaf, const JoinedMeshes& meshes) {
+    each_triangle(leaf, meshes,
+                  [](const Mesh&, const glm::uvec3& triangle) { __builtin_prefetch(&triangle); });
 }
-void fetch_corners(const Leaf& leaf, const Mesh& mesh) {
-    for (const std::uint32_t primitive : leaf.primitives) {
-        const glm::uvec3 t = mesh.triangles[primitive & ~WideBvh::kLast];
+void fetch_corners(const Leaf& leaf, const JoinedMeshes& meshes) {
+    each_triangle(leaf, meshes, [](const Mesh& mesh, const glm::uvec3& triangle) {
         for (int k = 0; k < 3; ++k)
-            __builtin_prefetch(&mesh.positions[t[k]]);
-    }
+            __builtin_prefetch(&mesh.positions[triangle[k]]);
+    });
 }
 
 // Some places in a tree, and the patches of the leaves among them.
 struct Portion {
     WideBvh& bvh;
-    const Mesh& mesh;
+    const JoinedMeshes& meshes;
     std::size_t begin = 0;  // node
     std::size_t end = 0;
     Blocks blocks;
@@ -143,13 +190,13 @@ struct Portion {
         });
         blocks.reserve(2 * triangles);  // enough for surfaces
         for (std::size_t i = 0; i < leaves.size() + 2 * kAhead; ++i) {
-            if (i < leaves.size()) fetch_triangles(leaves[i], mesh);
+            if (i < leaves.size()) fetch_triangles(leaves[i], meshes);
             const std::size_t next = i - kAhead;
-            if (next < leaves.size()) fetch_corners(leaves[next], mesh);
+            if (next < leaves.size()) fetch_corners(leaves[next], meshes);
             const std::size_t now = next - kAhead;
             if (now >= leaves.size()) continue;
             *leaves[now].place = WideRef::leaf(static_cast<std::uint32_t>(blocks.size())).bits;
-            append_patches(leaves[now].primitives, mesh, blocks);
+            append_patches(leaves[now], meshes, blocks);
         }
         blocks.shrink_to_fit();
     }
@@ -187,14 +234,14 @@ void make_room(TrianglePatches& patches, std::size_t blocks) {
 
 }  // namespace
 
-TrianglePatches take_triangles(WideBvh& bvh, const Mesh& mesh, int threads,
+TrianglePatches take_triangles(WideBvh& bvh, const JoinedMeshes& meshes, int threads,
                                const std::stop_token& stop) {
     TrianglePatches patches;
     if (bvh.empty()) return patches;
     constexpr std::size_t kNodes = 256;
     std::vector<Portion> portions;
     for (std::size_t n = 0; n == 0 || n < bvh.nodes.size(); n += kNodes)
-        portions.push_back({bvh, mesh, n, std::min(bvh.nodes.size(), n + kNodes), {}});
+        portions.push_back({bvh, meshes, n, std::min(bvh.nodes.size(), n + kNodes), {}});
     std::vector<std::size_t> first(portions.size() + 1);
     parallel_for(portions.size(), threads, stop,
                  [&](std::size_t i) { portions[i].collect_leaves(); });

@@ -4,6 +4,7 @@
 // Memory: 16 bytes a patch, 12 a corner, 4 a triangle; about 25 bytes a triangle.
 #pragma once
 
+#include "tracer/accel/joined_meshes.h"
 #include "tracer/bvh/wide_bvh.h"
 #include "tracer/parallel/large_array.h"
 #include "tracer/scene/scene.h"
@@ -24,7 +25,8 @@ struct TrianglePatch {
 
     std::uint8_t triangles = 0;
     std::uint8_t corners = 0;
-    std::uint16_t last = 0;  // 1: of its leaf
+    std::uint16_t last : 1 = 0;     // 1: of its leaf
+    std::uint16_t member : 15 = 0;  // whose triangles they are, in a tree over several meshes
     std::uint32_t corner[3] = {0, 0, 0};
 
     // Of the mesh: one a triangle.
@@ -57,8 +59,9 @@ struct TrianglePatches {
 };
 
 // Puts the leaves' triangles into patches: a leaf's index is its first patch's block then, and the
-// tree's indices are gone. The same for any number of threads. Throws Cancelled.
-TrianglePatches take_triangles(WideBvh& bvh, const Mesh& mesh, int threads,
+// tree's indices, of the meshes' triangles, are gone. The same for any number of threads. Throws
+// Cancelled.
+TrianglePatches take_triangles(WideBvh& bvh, const JoinedMeshes& meshes, int threads,
                                const std::stop_token& stop);
 
 // Calls body(patch) for a leaf's patches until it returns true, and returns whether it did.

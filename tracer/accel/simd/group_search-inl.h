@@ -146,6 +146,9 @@ inline ClosestOfOne one_of(ClosestOfGroup& group, std::size_t ray, std::uint32_t
 inline AnyOfOne one_of(AnyOfGroup& group, std::size_t ray, std::uint32_t /*object*/) {
     return {group, ray};
 }
+inline void set_object(ClosestOfOne& one, std::uint32_t object) {
+    one.object = object;
+}
 
 }  // namespace raypick::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

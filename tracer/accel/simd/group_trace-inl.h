@@ -108,9 +108,13 @@ private:
     }
 
     void enter(const TopEntry& entry, const GroupSpace& world, RayMask mask) {
+        const Instance& instance = state_.instances[entry.object];
+        if (instance.joined()) {
+            enter_joined(entry, world, mask);
+            return;
+        }
         const Object& object = state_.scene->objects[entry.object];
         if ((object.mask & query_.mask) == 0) return;
-        const Instance& instance = state_.instances[entry.object];
         const bool in_groups = std::holds_alternative<MeshInstance>(object.shape) ||
                                std::holds_alternative<SphereSetInstance>(object.shape) ||
                                std::holds_alternative<ConeSetInstance>(object.shape);
@@ -128,6 +132,22 @@ private:
             return;
         }
         enter_placed(entry, world, mask, reach);
+    }
+
+    // The joined tree, or a part of it.
+    void enter_joined(const TopEntry& entry, const GroupSpace& world, RayMask mask) {
+        const Instance& joined = state_.instances[entry.object];
+        if (!(joined.tree->reach < kFarthestReach)) {
+            each_on_its_own(entry, mask);
+            return;
+        }
+        search_mesh(entry, world, mask, [&](const TrianglePatch& patch) HWY_ATTR {
+            const std::uint32_t index = joined.members[patch.member].object;
+            if (index == kNobody) return Searched{};
+            const Object& object = state_.scene->objects[index];
+            if ((object.mask & query_.mask) == 0) return Searched{};
+            return Searched{index, shown_to(world, object)};
+        });
     }
 
     // A mesh or a set with a space of its own.
@@ -162,34 +182,19 @@ private:
 
     void enter_tree(const TopEntry& entry, const GroupSpace& space, RayMask mask) {
         const Object& object = state_.scene->objects[entry.object];
-        ShownSides shown{shows(object.sides, true) && shows(query_.sides, true),
-                         shows(object.sides, false) && shows(query_.sides, false)};
-        if (!shown.front && !shown.back) return;
-        if (space.course.backwards()) std::swap(shown.front, shown.back);
-        const Instance& instance = state_.instances[entry.object];
-        const PrimitiveTree& tree = *instance.tree;
+        const ShownSides shown = shown_to(space, object);
+        if (!shown.any()) return;
+        const PrimitiveTree& tree = *state_.instances[entry.object].tree;
         if (std::holds_alternative<MeshInstance>(object.shape)) {
-            search_tree(entry, space, mask, [&](const WideRef& leaf, RayMask met) HWY_ATTR {
-                each_patch(tree.patches, leaf, [&](const TrianglePatch& patch) HWY_ATTR {
-                    GroupTriangles triangles;  // NOLINT: not initialised, as it is large
-                    std::uint32_t left = 0;
-                    for (std::size_t i = 0; i < patch.triangles; i += kTrianglesAtOnce)
-                        left |= set_triangles(space, patch, i, triangles) << i;
-                    left &= (1u << patch.triangles) - 1u;
-                    for (; left != 0; left &= left - 1) {
-                        const auto i = static_cast<std::size_t>(std::countr_zero(left));
-                        judge_all(entry, space, shown, GroupTriangle{triangles, patch, i},
-                                  patch.primitives()[i], met);
-                    }
-                    return false;
-                });
+            search_mesh(entry, space, mask, [&](const TrianglePatch& /*patch*/) HWY_ATTR {
+                return Searched{entry.object, shown};
             });
         } else if (const auto* cones = std::get_if<ConeSetInstance>(&object.shape)) {
             const ConeSet& set = state_.scene->cone_sets[cones->set];
             search_tree(entry, space, mask, [&](const WideRef& leaf, RayMask met) HWY_ATTR {
                 each_index(tree.bvh, leaf, [&](std::uint32_t primitive) HWY_ATTR {
                     const std::size_t first = std::size_t{2} * primitive;
-                    judge_all(entry, space, shown,
+                    judge_all(entry.object, space, shown,
                               group_cone(set.ends[first], set.ends[first + 1], set.capped),
                               primitive, met);
                     return false;
@@ -200,11 +205,53 @@ private:
             const std::span<const glm::vec4> spheres = state_.scene->sphere_sets[set].spheres;
             search_tree(entry, space, mask, [&](const WideRef& leaf, RayMask met) HWY_ATTR {
                 each_index(tree.bvh, leaf, [&](std::uint32_t primitive) HWY_ATTR {
-                    judge_all(entry, space, shown, group_sphere(space, spheres[primitive]),
+                    judge_all(entry.object, space, shown, group_sphere(space, spheres[primitive]),
                               primitive, met);
                     return false;
                 });
             });
+        }
+    }
+
+    // As its rays see an object, which go from end to start backwards.
+    [[nodiscard]] ShownSides shown_to(const GroupSpace& space, const Object& object) const {
+        ShownSides shown{shows(object.sides, true) && shows(query_.sides, true),
+                         shows(object.sides, false) && shows(query_.sides, false)};
+        if (space.course.backwards()) std::swap(shown.front, shown.back);
+        return shown;
+    }
+
+    // Whose a patch's triangles are, and which sides of them count.
+    struct Searched {
+        std::uint32_t object = 0;
+        ShownSides shown{false, false};
+    };
+
+    // searched(patch) says what is searched.
+    template <typename SearchedOf>
+    HWY_INLINE void search_mesh(const TopEntry& entry, const GroupSpace& space, RayMask mask,
+                                const SearchedOf& searched) {
+        const TrianglePatches& patches = state_.instances[entry.object].tree->patches;
+        search_tree(entry, space, mask, [&](const WideRef& leaf, RayMask met) HWY_ATTR {
+            each_patch(patches, leaf, [&](const TrianglePatch& patch) HWY_ATTR {
+                const Searched here = searched(patch);
+                if (here.shown.any()) judge_patch(here, space, patch, met);
+                return false;
+            });
+        });
+    }
+
+    HWY_INLINE void judge_patch(const Searched& searched, const GroupSpace& space,
+                                const TrianglePatch& patch, RayMask mask) {
+        GroupTriangles triangles;  // NOLINT: not initialised, as it is large
+        std::uint32_t left = 0;
+        for (std::size_t i = 0; i < patch.triangles; i += kTrianglesAtOnce)
+            left |= set_triangles(space, patch, i, triangles) << i;
+        left &= (1u << patch.triangles) - 1u;
+        for (; left != 0; left &= left - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+            judge_all(searched.object, space, searched.shown, GroupTriangle{triangles, patch, i},
+                      patch.primitives()[i], mask);
         }
     }
 
@@ -214,8 +261,7 @@ private:
         walk_group(state_.instances[entry.object].tree->bvh, entry.part, space,
                    search_.limits_in(space), mask, leaf,
                    [&](const WideRef& part, RayMask met) HWY_ATTR {
-                       if (std::holds_alternative<MeshInstance>(
-                               state_.scene->objects[entry.object].shape)) {
+                       if (is_mesh(entry)) {
                            few_in_mesh({entry.object, part}, met);
                        } else {
                            each_on_its_own({entry.object, part}, met);
@@ -223,11 +269,16 @@ private:
                    });
     }
 
+    [[nodiscard]] bool is_mesh(const TopEntry& entry) const {
+        return state_.instances[entry.object].joined() ||
+               std::holds_alternative<MeshInstance>(state_.scene->objects[entry.object].shape);
+    }
+
     template <typename Shape>
-    HWY_INLINE void judge_all(const TopEntry& entry, const GroupSpace& space,
+    HWY_INLINE void judge_all(std::uint32_t object, const GroupSpace& space,
                               const ShownSides& shown, const Shape& shape, std::uint32_t primitive,
                               RayMask mask) {
-        Taken<Shape> taken{shape, state_.instances[entry.object], entry.object, primitive};
+        Taken<Shape> taken{shape, state_.instances[object], object, primitive};
         each_vector(mask, [&](std::size_t ray, RayMask bits) HWY_ATTR {
             const Verdict verdict = judge_some(space, search_.limits, shape, shown, ray, bits);
             if ((verdict.may & bits) == 0) return;

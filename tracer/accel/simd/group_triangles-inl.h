@@ -251,6 +251,8 @@ struct Verdict {
 struct ShownSides {
     bool front = true;
     bool back = true;
+
+    [[nodiscard]] bool any() const { return front || back; }
 };
 
 HWY_INLINE Verdict judge(const GroupSpace& space, const GroupLimits& limits,

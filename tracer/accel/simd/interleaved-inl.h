@@ -85,18 +85,21 @@ private:
     }
 
     bool enter(const TopEntry& entry) {
-        const Object& object = state_->scene->objects[entry.object];
-        if ((object.mask & query_->mask) == 0) return false;
         const Instance& instance = state_->instances[entry.object];
-        if (!std::holds_alternative<MeshInstance>(object.shape)) {
-            return trace_entry(*state_, entry, ray_, *world_, *query_, *search_);
+        if (!instance.joined()) {
+            const Object& object = state_->scene->objects[entry.object];
+            if ((object.mask & query_->mask) == 0) return false;
+            if (!std::holds_alternative<MeshInstance>(object.shape)) {
+                return trace_entry(*state_, entry, ray_, *world_, *query_, *search_);
+            }
+            passage_.emplace(Passage{*state_->scene, object, instance, ray_, *query_,
+                                     object_ray(instance, ray_)});
+            if (!instance.identity) {
+                local_.emplace(passage_->local, instance);
+                space_ = &*local_;
+            }
         }
-        passage_.emplace(
-            Passage{*state_->scene, object, instance, ray_, *query_, object_ray(instance, ray_)});
-        if (!instance.identity) {
-            local_.emplace(passage_->local, instance);
-            space_ = &*local_;
-        }
+        instance_ = &instance;
         tree_ = instance.tree;
         base_ = stack_.count;
         stack_.push(ray_.t_min, entry.part.bits);
@@ -111,6 +114,9 @@ private:
 
     bool step_in_mesh(const WideRef& at) {
         if (at.is_leaf()) {
+            if (instance_->joined()) {
+                return trace_joined_leaf(*state_, *instance_, at, ray_, *world_, *query_, *search_);
+            }
             return ShapeTrace<Search>{*passage_, space_, {}, *search_}.triangles_of(at);
         }
         space_->slabs().push_met(tree_->bvh.nodes[at.index()], ray_.t_min, search_->limit(),
@@ -141,8 +147,9 @@ private:
     std::optional<Search> search_;
     std::optional<RayInSpace> world_;
     std::optional<RayInSpace> local_;
-    std::optional<Passage> passage_;
+    std::optional<Passage> passage_;  // not through the joined tree, where each leaf has its own
     RayInSpace* space_ = nullptr;
+    const Instance* instance_ = nullptr;
     const PrimitiveTree* tree_ = nullptr;  // of the mesh that it is in
     std::size_t base_ = 0;                 // what waits below is of the top tree
     WaitingBoxes stack_;

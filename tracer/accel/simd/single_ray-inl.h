@@ -76,6 +76,22 @@ private:
     TriangleFilter filter_;
 };
 
+// Calls some(patch, triangles) for a leaf's patches in which the ray may hit triangles, until it
+// returns true, and returns whether it did.
+template <typename Search, typename Some>
+bool each_filtered(const PrimitiveTree& tree, const WideRef& leaf, RayInSpace& space,
+                   const Search& search, const Some& some) {
+    const float reach = space.reach(tree);
+    return each_patch(tree.patches, leaf, [&](const TrianglePatch& patch) HWY_ATTR {
+        const std::uint32_t triangles = space.filter().may_hit(patch, reach, search.limit());
+        return triangles != 0 && some(patch, triangles);
+    });
+}
+
+// Told to searches before they are offered what stands in an object. Most learn it from the hit.
+template <typename Search>
+void set_object(Search& /*search*/, std::uint32_t /*object*/) {}
+
 // A shape as rays meet it: itself, or a tree over primitives, of which `part` is to be searched.
 template <typename Search>
 struct ShapeTrace {
@@ -117,19 +133,21 @@ struct ShapeTrace {
 
     // Of a leaf of a mesh.
     [[nodiscard]] bool triangles_of(const WideRef& leaf) const {
-        const PrimitiveTree& tree = *passage.instance.tree;
-        const float reach = space->reach(tree);
-        return each_patch(tree.patches, leaf, [&](const TrianglePatch& patch) HWY_ATTR {
-            std::uint32_t left = space->filter().may_hit(patch, reach, search.limit());
-            for (; left != 0; left &= left - 1) {
-                const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
-                if (triangle(space->sheared(passage.local), patch.position(i, 0),
-                             patch.position(i, 1), patch.position(i, 2), patch.primitives()[i])) {
-                    return true;
-                }
+        return each_filtered(*passage.instance.tree, leaf, *space, search,
+                             [this](const TrianglePatch& patch, std::uint32_t some)
+                                 HWY_ATTR { return triangles(patch, some); });
+    }
+
+    // Of a patch those in the mask.
+    [[nodiscard]] bool triangles(const TrianglePatch& patch, std::uint32_t some) const {
+        for (; some != 0; some &= some - 1) {
+            const auto i = static_cast<std::uint32_t>(std::countr_zero(some));
+            if (triangle(space->sheared(passage.local), patch.position(i, 0), patch.position(i, 1),
+                         patch.position(i, 2), patch.primitives()[i])) {
+                return true;
             }
-            return false;
-        });
+        }
+        return false;
     }
 
     // The one primitive of a mesh or a set, or the shape itself.
@@ -205,12 +223,38 @@ bool trace_simple(const AccelState& state, std::uint32_t index, const Ray& ray,
     return std::visit(ShapeTrace<Search>{passage, nullptr, {}, search}, object.shape);
 }
 
+// A leaf of the joined tree. `world` is the ray.
+template <typename Search>
+bool trace_joined_leaf(const AccelState& state, const Instance& joined, const WideRef& leaf,
+                       const Ray& ray, RayInSpace& world, const RayQuery& query, Search& search) {
+    return each_filtered(
+        *joined.tree, leaf, world, search,
+        [&](const TrianglePatch& patch, std::uint32_t some) HWY_ATTR {
+            const Member& member = joined.members[patch.member];
+            if (member.object == kNobody) return false;
+            const Object& object = state.scene->objects[member.object];
+            if ((object.mask & query.mask) == 0) return false;
+            const Passage passage{*state.scene, object, *member.instance,
+                                  ray,          query,  object_ray(*member.instance, ray)};
+            set_object(search, member.object);
+            return ShapeTrace<Search>{passage, &world, {}, search}.triangles(patch, some);
+        });
+}
+
 // `world` is the ray.
 template <typename Search>
 bool trace_entry(const AccelState& state, const TopEntry& entry, const Ray& ray, RayInSpace& world,
                  const RayQuery& query, Search& search) {
     const Instance& instance = state.instances[entry.object];
     if (instance.tree == nullptr) return trace_simple(state, entry.object, ray, query, search);
+    if (instance.joined()) {
+        return walk(
+            instance.tree->bvh, entry.part, world.slabs(), ray.t_min,
+            [&]() HWY_ATTR { return search.limit(); },
+            [&](const WideRef& leaf) HWY_ATTR {
+                return trace_joined_leaf(state, instance, leaf, ray, world, query, search);
+            });
+    }
     const Object& object = state.scene->objects[entry.object];
     if ((object.mask & query.mask) == 0) return false;
     const Passage passage{*state.scene, object, instance, ray, query, object_ray(instance, ray)};

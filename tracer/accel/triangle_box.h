@@ -1,0 +1,39 @@
+// The boxes of a mesh's triangles.
+#pragma once
+
+#include "tracer/bvh/float4.h"
+#include "tracer/geometry/bounds.h"
+#include "tracer/scene/scene.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace raypick {
+
+// With a fourth lane that means nothing.
+inline Float4 vertex_position(const Mesh& mesh, std::uint32_t vertex) {
+    const glm::vec3* const at = &mesh.positions[vertex];
+    Float4 position{};
+    // All four at once, where there is something behind the three.
+    if (vertex + std::size_t{1} < mesh.positions.size()) {
+        std::memcpy(&position, at, sizeof position);
+    } else {
+        std::memcpy(&position, at, sizeof *at);
+    }
+    return position;
+}
+
+// A triangle with a NaN is never hit: its box stays empty.
+inline Bounds triangle_box(const Mesh& mesh, std::size_t index) {
+    const glm::uvec3 t = mesh.triangles[index];
+    const Float4 a = vertex_position(mesh, t.x);
+    const Float4 b = vertex_position(mesh, t.y);
+    const Float4 c = vertex_position(mesh, t.z);
+    const Float4 sum = a + b + c;
+    if (!std::isfinite(sum[0] + sum[1] + sum[2])) return {};
+    return Box4{min4(min4(a, b), c), max4(max4(a, b), c)}.bounds();
+}
+
+}  // namespace raypick
