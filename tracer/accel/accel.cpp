@@ -66,7 +66,8 @@ void open_entry(const AccelState& state, std::size_t which, std::vector<PlacedEn
 // Opens objects that lie in each other's way, the largest boxes first, so that the top tree can
 // tell their parts apart (Benthin, Woop, Wald, Afra, "Improved Two-Level BVHs using Partial
 // Re-Braiding", HPG 2017). Objects that stand elsewhere than their shapes remain whole, as each of
-// their parts would have rays to be transformed again.
+// their parts would have rays to be transformed again; so does the joined tree, which knows more of
+// its parts than the top tree can.
 void open_entries(const AccelState& state, std::vector<PlacedEntry>& entries,
                   const std::stop_token& stop) {
     constexpr std::size_t kMostParts = 64;  // an object, on average
@@ -78,6 +79,7 @@ void open_entries(const AccelState& state, std::vector<PlacedEntry>& entries,
         const TopEntry& entry = entries[which].entry;
         const Instance& instance = state.instances[entry.object];
         if (!instance.identity || instance.tree == nullptr || entry.part.is_leaf()) return;
+        if (instance.joined()) return;
         candidates.emplace(entries[which].box.half_area(), which);
     };
     for (std::size_t i = 0; i < entries.size(); ++i)
