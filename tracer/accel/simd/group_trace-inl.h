@@ -6,6 +6,7 @@
 #define RAYPICK_GROUP_TRACE_INL_H
 #endif
 
+#include "tracer/accel/simd/decide_rectangles-inl.h"
 #include "tracer/accel/simd/decide_triangles-inl.h"
 #include "tracer/accel/simd/group_back-inl.h"
 #include "tracer/accel/simd/group_boxes-inl.h"
@@ -115,6 +116,10 @@ private:
         }
         const Object& object = state_.scene->objects[entry.object];
         if ((object.mask & query_.mask) == 0) return;
+        if (const auto* rectangle = std::get_if<Rectangle>(&object.shape)) {
+            enter_rectangle(entry.object, *rectangle, world, mask);
+            return;
+        }
         const bool in_groups = std::holds_alternative<MeshInstance>(object.shape) ||
                                std::holds_alternative<SphereSetInstance>(object.shape) ||
                                std::holds_alternative<ConeSetInstance>(object.shape);
@@ -147,6 +152,48 @@ private:
             const Object& object = state_.scene->objects[index];
             if ((object.mask & query_.mask) == 0) return Searched{};
             return Searched{index, shown_to(world, object)};
+        });
+    }
+
+    // A few rays at once, of which each is decided at once.
+    void enter_rectangle(std::uint32_t index, const Rectangle& rectangle, const GroupSpace& world,
+                         RayMask mask) {
+        const Instance& instance = state_.instances[index];
+        if (instance.holes) {
+            each_on_its_own({index, {}}, mask);
+            return;
+        }
+        const GroupRays& rays = world.course.backwards() ? *world.course.forward : world.rays;
+        constexpr RayMask kSome = (RayMask{1} << kDoublesAtOnce) - 1;
+        for (std::size_t first = 0; first < kGroup; first += kDoublesAtOnce) {
+            const RayMask some = (mask >> first) & kSome;
+            if (some == 0) continue;
+            if (instance.identity) {
+                offer_rectangle(index, RectanglesDecided(rays, first, rectangle), first, some);
+                continue;
+            }
+            RectanglePairs pairs;
+            pairs.fill_from(0);
+            each_ray(some, [&](std::size_t lane) HWY_ATTR {
+                pairs.set(lane, object_ray(instance, rays_[first + lane]), rectangle);
+            });
+            offer_rectangle(index, RectanglesDecided(pairs), first, some);
+        }
+    }
+
+    // To the rays of the mask, counted from `first` on.
+    HWY_INLINE void offer_rectangle(std::uint32_t index, const RectanglesDecided& decided,
+                                    std::size_t first, RayMask mask) {
+        const Object& object = state_.scene->objects[index];
+        const auto seen = [&](bool front) HWY_ATTR {
+            return shows(object.sides, front) && shows(query_.sides, front);
+        };
+        const std::uint32_t shown =
+            (seen(true) ? decided.front : 0u) | (seen(false) ? ~decided.front : 0u);
+        each_ray(mask & decided.ordinary & shown, [&](std::size_t lane) HWY_ATTR {
+            const std::size_t ray = first + lane;
+            const auto t = static_cast<float>(decided.enters_at[lane]);
+            if (t > rays_[ray].t_min && t < rays_[ray].t_max) offer(ray, index, 0, t);
         });
     }
 
@@ -354,10 +401,15 @@ private:
         const bool front = answers.hits_front(lane);
         const Object& object = state_.scene->objects[index];
         if (!shows(object.sides, front) || !shows(query_.sides, front)) return;
+        offer(ray, index, primitive, answers.t[lane]);
+    }
+
+    // A hit that counts, if none before it does.
+    HWY_INLINE void offer(std::size_t ray, std::uint32_t object, std::uint32_t primitive, float t) {
         if constexpr (std::is_same_v<Group, AnyOfGroup>) {
             search_.block(RayMask{1} << ray);
-        } else if (answers.t[lane] <= search_.limits.t_far[ray]) {
-            search_.offer(ray, index, primitive, answers.t[lane]);
+        } else if (t <= search_.limits.t_far[ray]) {
+            search_.offer(ray, object, primitive, t);
         }
     }
 

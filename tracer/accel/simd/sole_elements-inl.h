@@ -1,5 +1,5 @@
-// Cones and spheres that are a ray's only candidate, several at once. Included once for each
-// instruction set.
+// Cones and spheres of sets, and rectangles, that are a ray's only candidate, several at once.
+// Included once for each instruction set.
 #if defined(RAYPICK_SOLE_ELEMENTS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RAYPICK_SOLE_ELEMENTS_INL_H
 #undef RAYPICK_SOLE_ELEMENTS_INL_H
@@ -9,6 +9,7 @@
 
 #include "tracer/accel/passage.h"
 #include "tracer/accel/simd/decide_cones-inl.h"
+#include "tracer/accel/simd/decide_rectangles-inl.h"
 #include "tracer/accel/simd/decide_spheres-inl.h"
 #include "tracer/accel/simd/group_search-inl.h"
 
@@ -29,8 +30,13 @@ inline Sphere element_of(const Scene& scene, const SphereSetInstance& instance,
     return sphere_of(scene.sphere_sets[instance.set], number);
 }
 
-// Up to kDoublesAtOnce rays whose only candidate is an element of a set. `Set` is the instance's
-// type.
+inline const Rectangle& element_of(const Scene& /*scene*/, const Rectangle& rectangle,
+                                   std::uint32_t /*number*/) {
+    return rectangle;
+}
+
+// Up to kDoublesAtOnce rays whose only candidate is an element of a set, or a rectangle. `Set` is
+// the shape's type.
 template <typename Set, typename Pairs, typename Decided>
 class SoleElements {
 public:
@@ -115,22 +121,27 @@ private:
 
 using SoleCones = SoleElements<ConeSetInstance, ConePairs, ConesDecided>;
 using SoleSpheres = SoleElements<SphereSetInstance, SpherePairs, SpheresDecided>;
+using SoleRectangles = SoleElements<Rectangle, RectanglePairs, RectanglesDecided>;
 
-// The candidates of rays without rivals as far as they are cones and spheres; the other rays stay
-// in the mask that it returns.
+// The candidates of rays without rivals as far as they are cones, spheres and rectangles; the other
+// rays stay in the mask that it returns.
 inline RayMask decide_sole_elements(const AccelState& state, const ClosestOfGroup& search,
                                     RayMask mask, std::span<const Ray> rays, const RayQuery& query,
                                     std::span<Hit> hits) {
     RayMask left = 0;
     SoleCones cones(state, search, rays, query);
     SoleSpheres spheres(state, search, rays, query);
+    SoleRectangles rectangles(state, search, rays, query);
     for (; mask != 0; mask &= mask - 1) {
         const auto ray = static_cast<std::size_t>(std::countr_zero(mask));
-        if (!cones.add(ray) && !spheres.add(ray)) left |= RayMask{1} << ray;
+        if (!cones.add(ray) && !spheres.add(ray) && !rectangles.add(ray)) {
+            left |= RayMask{1} << ray;
+        }
         if (cones.full()) left |= cones.decide(hits);
         if (spheres.full()) left |= spheres.decide(hits);
+        if (rectangles.full()) left |= rectangles.decide(hits);
     }
-    return left | cones.rest(hits) | spheres.rest(hits);
+    return left | cones.rest(hits) | spheres.rest(hits) | rectangles.rest(hits);
 }
 
 }  // namespace raypick::HWY_NAMESPACE
