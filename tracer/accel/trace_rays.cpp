@@ -6,6 +6,7 @@
 #include "tracer/accel/simd/group_trace-inl.h"
 #include "tracer/accel/simd/group_winners-inl.h"
 #include "tracer/accel/simd/interleaved-inl.h"
+#include "tracer/accel/simd/ray_chunk-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
 #include "tracer/accel/trace_rays.h"
 #include "tracer/error.h"

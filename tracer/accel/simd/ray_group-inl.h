@@ -69,6 +69,9 @@ HWY_INLINE hn::Mask<Rays> ray_mask(RayMask bits) {
     return hn::LoadMaskBits(Rays(), stored);
 }
 
+// Beyond it float products of three coordinates overflow.
+inline constexpr float kFarthestReach = 1e11f;
+
 // Rays in a space, component by component.
 struct GroupRays {
     // Directions so flat along an axis are taken for this steep, and boxes are widened instead.

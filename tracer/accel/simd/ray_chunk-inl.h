@@ -1,0 +1,123 @@
+// Which rays go in groups. Included once for each instruction set.
+#if defined(RAYPICK_RAY_CHUNK_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYPICK_RAY_CHUNK_INL_H
+#undef RAYPICK_RAY_CHUNK_INL_H
+#else
+#define RAYPICK_RAY_CHUNK_INL_H
+#endif
+
+#include "tracer/accel/accel_state.h"
+#include "tracer/accel/passage.h"
+#include "tracer/accel/simd/group_boxes-inl.h"
+#include "tracer/accel/simd/ray_group-inl.h"
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <span>
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace raypick::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Fewer rays than that go one by one: in meshes they then hide each other's waiting (see
+// Traversal), elsewhere a group is better as soon as it isn't given up at once.
+inline int fewest_in_group(const AccelState& state) {
+    return state.mostly_triangles ? 12 : kFewRays + 1;
+}
+
+// Rays as they come, and which of them can go in groups.
+struct Chunk {
+    GroupRays world;
+    GroupLimits limits;
+    std::array<RayMask, 8> octants{};
+    RayMask alone = 0;
+
+    Chunk(const AccelState& state, std::span<const Ray> rays, const RayQuery& query) {
+        const bool plain = !query.accept && query.clip_planes.empty() &&
+                           (state.top.empty() || state.reach < kFarthestReach);
+        if (!plain) {
+            for (std::size_t i = 0; i < rays.size(); ++i)
+                alone |= RayMask{usable(rays[i]) ? 1u : 0u} << i;
+            return;
+        }
+        if (kAtOnce > 1 && rays.size() == kGroup) {
+            set_all(rays);
+        } else {
+            for (std::size_t i = 0; i < kGroup; ++i)
+                set(i, i < rays.size() ? rays[i] : rays[0]);
+        }
+        const RayMask there = rays.size() == kGroup ? ~RayMask{0} : (RayMask{1} << rays.size()) - 1;
+        const RayMask groupable = there & ordinary();
+        each_ray(there & ~groupable,
+                 [&](std::size_t i) HWY_ATTR { alone |= RayMask{usable(rays[i]) ? 1u : 0u} << i; });
+        world.invert();
+        octants = world.octants(groupable);
+        const int fewest = fewest_in_group(state);
+        for (RayMask& group : octants) {
+            if (std::popcount(group) >= fewest) continue;
+            alone |= group;
+            group = 0;
+        }
+    }
+
+private:
+    // A ray's numbers are eight in a row: origin, direction, t_min, t_max.
+    HWY_INLINE void set_all(std::span<const Ray> rays) {
+#if HWY_TARGET != HWY_SCALAR
+        static_assert(sizeof(Ray) == 8 * sizeof(float) && offsetof(Ray, direction) == 12 &&
+                      offsetof(Ray, t_min) == 24 && offsetof(Ray, t_max) == 28);
+        const Rays d;
+        for (std::size_t i = 0; i < kGroup; i += kAtOnce) {
+            // Of one half of them in turns: number k and number k + 4 of each ray.
+            RayFloats a[4];
+            RayFloats b[4];
+            const auto* first = reinterpret_cast<const float*>(&rays[i]);
+            const auto* second = reinterpret_cast<const float*>(&rays[i + kAtOnce / 2]);
+            hn::LoadInterleaved4(d, first, a[0], a[1], a[2], a[3]);
+            hn::LoadInterleaved4(d, second, b[0], b[1], b[2], b[3]);
+            float* const low[4] = {&world.origin[0][i], &world.origin[1][i], &world.origin[2][i],
+                                   &world.direction[0][i]};
+            float* const high[4] = {&world.direction[1][i], &world.direction[2][i],
+                                    &limits.t_min[i], &limits.t_far[i]};
+            for (std::size_t k = 0; k < 4; ++k) {
+                hn::Store(hn::ConcatEven(d, b[k], a[k]), d, low[k]);
+                hn::Store(hn::ConcatOdd(d, b[k], a[k]), d, high[k]);
+            }
+        }
+#else
+        (void)rays;
+#endif
+    }
+
+    HWY_INLINE void set(std::size_t i, const Ray& ray) {
+        world.origin[0][i] = ray.origin.x;
+        world.origin[1][i] = ray.origin.y;
+        world.origin[2][i] = ray.origin.z;
+        world.direction[0][i] = ray.direction.x;
+        world.direction[1][i] = ray.direction.y;
+        world.direction[2][i] = ray.direction.z;
+        limits.t_min[i] = ray.t_min;
+        limits.t_far[i] = ray.t_max;
+    }
+
+    // Usable, from t_min >= 0 on and not too far away for float; arranged so that a NaN is not.
+    [[nodiscard]] RayMask ordinary() const {
+        const Rays d;
+        RayMask result = world.within(kFarthestReach, 0.5f, 2.0f);
+        for (std::size_t i = 0; i < kGroup; i += kAtOnce) {
+            const auto t_min = hn::Load(d, limits.t_min.data() + i);
+            const auto t_far = hn::Load(d, limits.t_far.data() + i);
+            const auto fine = hn::And(hn::Ge(t_min, hn::Zero(d)), hn::Lt(t_min, t_far));
+            result &= ~(kAllAtOnce << i) | ray_bits(fine) << i;
+        }
+        return result;
+    }
+};
+
+}  // namespace raypick::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard
