@@ -287,21 +287,28 @@ void BatchTracer::find_shares(const Step& step, const PreparedLight& light) {
     const std::span<const Ray> rays = std::span(shadow_rays_).first(shadow_count_);
     count_shadows(step.job.counts, rays.size(), step.depth);
     blocked_.resize(rays.size());
-    if (scene.settings.glass_shadows == GlassShadows::tinted) {
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-            if (step.job.stop.stop_requested()) return;
-            const PathRay& path = step.at.rays[points_.ray(shadowed_[i])];
-            const glm::vec3 share =
-                transmittance(scene, rays[i], step.at.interior_of(path), path.cone.width);
-            blocked_[i] = share == glm::vec3(0.0f) ? 1 : 0;
-            points_.tint(shadowed_[i], share);
-        }
-        return;
-    }
     if (light.is_a_point()) {
         scene.accel->occluded_towards(glm::vec3(light.position), rays, blocked_);
     } else {
         scene.accel->occluded(rays, blocked_);
+    }
+    if (scene.settings.glass_shadows == GlassShadows::tinted && scene.sees_through) {
+        tint_shares(step, rays);
+    }
+}
+
+// Light goes through glass: of the rays that meet anything, what is left by it.
+void BatchTracer::tint_shares(const Step& step, std::span<const Ray> rays) {
+    const ShadeScene& scene = step.job.scene;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (step.job.stop.stop_requested()) return;
+        const PathRay& path = step.at.rays[points_.ray(shadowed_[i])];
+        const Interior* interior = step.at.interior_of(path);
+        const glm::vec3 share = blocked_[i] == 0
+                                    ? free_transmittance(scene, rays[i], interior)
+                                    : transmittance(scene, rays[i], interior, path.cone.width);
+        blocked_[i] = share == glm::vec3(0.0f) ? 1 : 0;
+        points_.tint(shadowed_[i], share);
     }
 }
 

@@ -96,6 +96,7 @@ private:
     void shine(const Step& step, std::size_t light, int sample);
     void cast_shadows(const Step& step, const PreparedLight& light);
     void find_shares(const Step& step, const PreparedLight& light);
+    void tint_shares(const Step& step, std::span<const Ray> rays);
 
     std::deque<Generation> generations_;  // by depth - 1
 

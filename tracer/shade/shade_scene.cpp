@@ -89,6 +89,7 @@ ShadeScene shade_scene(const Accel& accel, std::span<const Light> lights,
         result.materials.push_back(prepared(material, settings));
         if (result.materials.back().has_maps) result.has_maps = true;
         if (settings.refractions && result.materials.back().fills) result.has_bodies = true;
+        if (result.materials.back().see_through) result.sees_through = true;
     }
     result.materials.push_back(prepared(material(accel.scene(), kNoMaterial), settings));
     return result;

@@ -34,6 +34,7 @@ struct ShadeScene {
     std::vector<PreparedMaterial> materials;  // by id; the last one is that of no id
     bool has_maps = false;                    // some of the materials do
     bool has_bodies = false;                  // rays may be inside of something
+    bool sees_through = false;                // some of the materials let light through
     bool draws_lots = false;                  // points on lights are random
     bool plain_sky = false;                   // the background is all that is around
 };

@@ -78,4 +78,8 @@ glm::vec3 transmittance(const ShadeScene& scene, const Ray& ray, const Interior*
     return passage.at_end();
 }
 
+glm::vec3 free_transmittance(const ShadeScene& scene, const Ray& ray, const Interior* interior) {
+    return Passage(scene, ray, interior, 0.0f).at_end();
+}
+
 }  // namespace raypick

@@ -12,5 +12,7 @@ namespace raypick {
 // the cone of the ray that arrived there.
 glm::vec3 transmittance(const ShadeScene& scene, const Ray& ray, const Interior* interior,
                         float width);
+// The same of a ray that meets nothing.
+glm::vec3 free_transmittance(const ShadeScene& scene, const Ray& ray, const Interior* interior);
 
 }  // namespace raypick
