@@ -43,13 +43,27 @@ View open(const std::filesystem::path& file) {
 
 class AgreementTest : public GlTest {
 protected:
+    // To the bit.
+    static void expect_same(const Image& a, const Image& b) {
+        EXPECT_TRUE(a.object == b.object);
+        EXPECT_TRUE(a.primitive == b.primitive);
+        EXPECT_TRUE(a.depth == b.depth);
+        EXPECT_TRUE(a.normal == b.normal);
+        EXPECT_TRUE(a.colour == b.colour);
+    }
+
     static void agree(const std::filesystem::path& file) {
         const View view = open(file);
         Rasterizer rasterizer;
         rasterizer.set_scene(view.scene);
+        Rasterizer drawing_all(Unseen::drawn);
+        drawing_all.set_scene(view.scene);
         for (const Camera& camera : view.cameras) {
             rasterizer.draw(camera, kSize);
-            const Agreement result = compare(*view.accel, camera, rasterizer.read_image());
+            const Image image = rasterizer.read_image();
+            drawing_all.draw(camera, kSize);
+            expect_same(image, drawing_all.read_image());
+            const Agreement result = compare(*view.accel, camera, image);
             fmt::print("    {}: {}\n", file.filename().string(), result.summary());
             EXPECT_GT(result.objects, 0u);
             EXPECT_EQ(result.uniform_differ, 0u) << result.summary();

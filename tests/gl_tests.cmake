@@ -1,6 +1,7 @@
 # Tests of the room in this file's name.
 raypick_test(gl_handle_gl_test LABELS gl LIBS raypick_raster)
 raypick_test(rasterizer_gl_test LABELS gl LIBS raypick_raster)
+raypick_test(unseen_gl_test LABELS gl LIBS raypick_raster)
 raypick_test(raster_light_gl_test LABELS gl LIBS raypick_raster)
 raypick_test(raster_shapes_gl_test LABELS gl LIBS raypick_raster)
 raypick_test(footprint_gl_test LABELS gl LIBS raypick_raster)

@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string>
+
 namespace raypick {
 
 namespace {
@@ -27,6 +30,13 @@ void load_gl(GLADloadfunc get_proc_address) {
 
 std::string gl_description() {
     return fmt::format("{}, OpenGL {}", gl_string(GL_RENDERER), gl_string(GL_VERSION));
+}
+
+bool draws_in_software() {
+    const std::string renderer = gl_string(GL_RENDERER);
+    const auto names = {"llvmpipe", "softpipe", "swrast", "SWR", "Software Rasterizer"};
+    return std::any_of(names.begin(), names.end(),
+                       [&](const char* name) { return renderer.find(name) != std::string::npos; });
 }
 
 std::size_t max_buffer_texels() {

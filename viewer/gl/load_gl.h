@@ -14,6 +14,9 @@ void load_gl(GLADloadfunc get_proc_address);
 // GL_RENDERER and GL_VERSION of the current context, for messages.
 std::string gl_description();
 
+// True if the current context's OpenGL draws with the CPU.
+bool draws_in_software();
+
 // Largest number of elements of a buffer texture in the current context.
 std::size_t max_buffer_texels();
 

@@ -12,11 +12,14 @@ static_assert(std::variant_size_v<DrawnShape> == kShapeKinds);
 struct ShapeDraw {
     const ViewNumbers& view;
     const DrawnObject& object;
+    std::span<const IndexRun> runs;
     const Uniforms& uniforms;
 
     void operator()(const std::shared_ptr<const GpuMesh>& mesh) const {
         set_mesh_numbers();
-        for (const GpuMesh::Chunk& chunk : mesh->chunks()) {
+        for (std::size_t i = 0; i < mesh->chunks().size(); ++i) {
+            if (!runs.empty() && runs[i].count == 0) continue;
+            const GpuMesh::Chunk& chunk = mesh->chunks()[i];
             uniforms.set("first_primitive", static_cast<int>(chunk.first));
             uniforms.set("has_normals", static_cast<int>(chunk.has_normals));
             uniforms.set("has_uvs", static_cast<int>(chunk.has_uvs));
@@ -24,7 +27,11 @@ struct ShapeDraw {
             bind(Unit::positions, GL_TEXTURE_BUFFER, chunk.positions.texture());
             bind(Unit::normals, GL_TEXTURE_BUFFER, chunk.normals.texture());
             bind(Unit::uvs, GL_TEXTURE_BUFFER, chunk.uvs.texture());
-            glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * chunk.count));
+            if (runs.empty()) {
+                glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * chunk.count));
+            } else {
+                draw_run(runs[i]);
+            }
         }
     }
 
@@ -93,6 +100,13 @@ struct ShapeDraw {
     }
 
 private:
+    static void draw_run(const IndexRun& run) {
+        // An offset into the buffer, which OpenGL takes as a pointer.
+        const auto* offset =
+            reinterpret_cast<const void*>(run.first * sizeof(std::uint32_t));  // NOLINT
+        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(run.count), GL_UNSIGNED_INT, offset);
+    }
+
     void enter_unit_space() const {
         set_space(object.object_from_scene.linear);
         uniforms.set("unit_eye", glm::vec3(object.object_from_scene.point(view.eye)));
@@ -145,14 +159,15 @@ void bind(Unit unit, GLenum target, GLuint texture) {
 }
 
 void draw_objects(ShaderSet& shaders, Pass pass, const ViewNumbers& view,
-                  std::span<const DrawnObject* const> objects, int material_count) {
-    for (const DrawnObject* object : objects) {
+                  std::span<const SeenObject> objects, int material_count) {
+    for (const SeenObject& seen : objects) {
+        const DrawnObject* const object = seen.object;
         const Uniforms uniforms(shaders.shape(pass, object->shape.index(), object->look));
         uniforms.set("object_id", object->id);
         uniforms.set("object_material", object->material);
         uniforms.set("sides", static_cast<int>(object->sides));
         uniforms.set("material_count", material_count);
-        std::visit(ShapeDraw{view, *object, uniforms}, object->shape);
+        std::visit(ShapeDraw{view, *object, seen.runs, uniforms}, object->shape);
     }
 }
 

@@ -18,6 +18,8 @@ public:
     // True if these are the very arrays and parts of `mesh`. The scene that the mesh was uploaded
     // from must still be alive, so that an address can't have been used again.
     [[nodiscard]] bool holds(const Mesh& mesh) const;
+    // The arrays that it was uploaded from.
+    [[nodiscard]] const Mesh& mesh() const { return mesh_; }
     // Bounds of the corners of all triangles, object space.
     [[nodiscard]] const Bounds& bounds() const { return bounds_; }
 
@@ -35,7 +37,7 @@ public:
     [[nodiscard]] const std::vector<Chunk>& chunks() const { return chunks_; }
 
 private:
-    Mesh mesh_;  // spans and storage: for holds()
+    Mesh mesh_;  // spans and storage
     Bounds bounds_;
     std::vector<Chunk> chunks_;
 };

@@ -54,15 +54,17 @@ struct Rasterizer::State {
     ShaderWatch watch;
     Buffer view_block = new_buffer();
     VertexArray no_vertices = new_vertex_array();
+    Buffer indices = new_buffer();
+    bool leaves_out_unseen = false;
     GpuScene scene;
     FrameBuffers frame;
 
     void reload_changed_shaders();
-    void depth_pass(const ViewNumbers& view, std::span<const DrawnObject* const> objects);
-    void surface_pass(const ViewNumbers& view, std::span<const DrawnObject* const> objects,
-                      TieRule ties);
+    void depth_pass(const ViewNumbers& view, std::span<const SeenObject> objects);
+    void surface_pass(const ViewNumbers& view, std::span<const SeenObject> objects, TieRule ties);
     void shade_pass(const GpuLights& lights);
     void bind_materials() const;
+    void upload_indices(const std::vector<std::uint32_t>& values) const;
     // All passes of a frame, into the lower left corner of the buffers.
     void draw(const Camera& camera, ImageSize size, std::uint32_t mask, TieRule ties);
 };
@@ -76,16 +78,15 @@ void Rasterizer::State::reload_changed_shaders() {
     }
 }
 
-void Rasterizer::State::depth_pass(const ViewNumbers& view,
-                                   std::span<const DrawnObject* const> objects) {
+void Rasterizer::State::depth_pass(const ViewNumbers& view, std::span<const SeenObject> objects) {
     glBindFramebuffer(GL_FRAMEBUFFER, frame.depth.name());
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
     draw_objects(shaders, Pass::depth, view, objects, scene.materials.count());
 }
 
-void Rasterizer::State::surface_pass(const ViewNumbers& view,
-                                     std::span<const DrawnObject* const> objects, TieRule ties) {
+void Rasterizer::State::surface_pass(const ViewNumbers& view, std::span<const SeenObject> objects,
+                                     TieRule ties) {
     glBindFramebuffer(GL_FRAMEBUFFER, frame.surface.name());
     glEnable(GL_DEPTH_TEST);
     if (ties == TieRule::kept) {
@@ -112,6 +113,14 @@ void Rasterizer::State::bind_materials() const {
     bind(Unit::texels, GL_TEXTURE_BUFFER, scene.textures->texels.texture());
 }
 
+// For the vertex array that is bound.
+void Rasterizer::State::upload_indices(const std::vector<std::uint32_t>& values) const {
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices.name());
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER,
+                 static_cast<GLsizeiptr>(values.size() * sizeof(values[0])), values.data(),
+                 GL_STREAM_DRAW);
+}
+
 void Rasterizer::State::shade_pass(const GpuLights& lights) {
     glBindFramebuffer(GL_FRAMEBUFFER, frame.colour.name());
     bind(Unit::normal_t, GL_TEXTURE_2D, frame.normal_t.name());
@@ -132,7 +141,10 @@ void Rasterizer::State::shade_pass(const GpuLights& lights) {
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-Rasterizer::Rasterizer() : state_(std::make_unique<State>()) {}
+Rasterizer::Rasterizer(Unseen unseen) : state_(std::make_unique<State>()) {
+    state_->leaves_out_unseen =
+        unseen == Unseen::left_out || (unseen == Unseen::automatic && draws_in_software());
+}
 
 Rasterizer::~Rasterizer() = default;
 
@@ -157,21 +169,18 @@ void Rasterizer::State::draw(const Camera& camera, ImageSize size, std::uint32_t
     glBindBuffer(GL_UNIFORM_BUFFER, view_block.name());
     glBufferData(GL_UNIFORM_BUFFER, sizeof(ViewBlock), &view.block, GL_STREAM_DRAW);
     glBindBufferBase(GL_UNIFORM_BUFFER, kViewBinding, view_block.name());
-    std::vector<const DrawnObject*> objects;
-    for (const DrawnObject& object : scene.objects) {
-        if ((object.mask & mask) != 0 && may_be_seen(view, object.bounds)) {
-            objects.push_back(&object);
-        }
-    }
+    SeenObjects seen = seen_objects(scene, view, mask);
+    if (leaves_out_unseen) leave_out_unseen(seen, view, size);
     // Whatever makes a texture binds it to the active unit: before the units have what is drawn
     // with.
     const GpuLights lights = upload_lights(effective_lights(*scene.scene, camera), view.eye);
     glViewport(0, 0, size.cols, size.rows);
     glBindVertexArray(no_vertices.name());
+    upload_indices(seen.indices);
     frame.clear();
     bind_materials();
-    if (ties == TieRule::kept) depth_pass(view, objects);
-    surface_pass(view, objects, ties);
+    if (ties == TieRule::kept) depth_pass(view, seen.objects);
+    surface_pass(view, seen.objects, ties);
     shade_pass(lights);
     glBindVertexArray(0);
     glUseProgram(0);

@@ -18,10 +18,14 @@ namespace raypick {
 // the same.
 enum class TieRule { kept, dropped };
 
+// Whether the CPU looks first which triangles can be seen, and only those are drawn. The picture is
+// the same. `automatic`: where the CPU draws as well.
+enum class Unseen { automatic, left_out, drawn };
+
 // Needs a current OpenGL 3.3 core context with its functions loaded, the same one in every call.
 class Rasterizer {
 public:
-    Rasterizer();
+    explicit Rasterizer(Unseen unseen = Unseen::automatic);
     ~Rasterizer();
     Rasterizer(const Rasterizer&) = delete;
     Rasterizer& operator=(const Rasterizer&) = delete;
