@@ -40,7 +40,7 @@ FrameBuffers::FrameBuffers(ImageSize image_size, bool with_textures) : size(imag
     check_gl("making the frame's buffers");
     depth = make_framebuffer({}, depth_stencil.name());
     const GLuint colours[] = {colour_t.name()};
-    colour = make_framebuffer(colours);
+    colour = make_framebuffer(colours, depth_stencil.name());
     if (with_textures) {
         add_texture_targets();
     } else {

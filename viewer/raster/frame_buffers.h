@@ -32,7 +32,7 @@ struct FrameBuffers {
     GlTexture colour_t;   // linear RGB; t
     Framebuffer depth;    // first pass: depth alone
     Framebuffer surface;  // second pass: all of the above but colour
-    Framebuffer colour;   // third pass
+    Framebuffer colour;   // third pass, by the stencil of the second
 
 private:
     [[nodiscard]] Framebuffer surface_framebuffer() const;

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <initializer_list>
 #include <utility>
@@ -35,6 +36,11 @@ void set_state() {
     glFrontFace(GL_CCW);
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
+
+// What the second pass leaves in the stencil, so that the third looks textures up only where there
+// are some: software OpenGL runs every branch of an if.
+constexpr GLint kTaken = 1;     // the pixel shows something
+constexpr GLint kTextured = 2;  // of an object with textures
 
 template <typename T>
 std::unique_ptr<T[]> read_texture(GLuint texture, ImageSize size, GLenum format, GLenum type) {
@@ -63,6 +69,7 @@ struct Rasterizer::State {
     void depth_pass(const ViewNumbers& view, std::span<const SeenObject> objects);
     void surface_pass(const ViewNumbers& view, std::span<const SeenObject> objects, TieRule ties);
     void shade_pass(const GpuLights& lights);
+    void shade_pixels(const GpuLights& lights, bool textured);
     void bind_materials() const;
     void upload_indices(const std::vector<std::uint32_t>& values) const;
     // All passes of a frame, into the lower left corner of the buffers.
@@ -89,19 +96,24 @@ void Rasterizer::State::surface_pass(const ViewNumbers& view, std::span<const Se
                                      TieRule ties) {
     glBindFramebuffer(GL_FRAMEBUFFER, frame.surface.name());
     glEnable(GL_DEPTH_TEST);
-    if (ties == TieRule::kept) {
-        // The first one within the gap of the depth that the first pass left takes the pixel.
-        glDepthFunc(GL_LEQUAL);
-        glDepthMask(GL_FALSE);
-        glEnable(GL_STENCIL_TEST);
-        glStencilFunc(GL_EQUAL, 0, 0xff);
-        glStencilOp(GL_KEEP, GL_KEEP, GL_INCR);
-    } else {
-        glDepthFunc(GL_LESS);
+    glEnable(GL_STENCIL_TEST);
+    glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+    const bool kept = ties == TieRule::kept;
+    // The first one within the gap of the depth that the first pass left takes the pixel.
+    glDepthFunc(kept ? GL_LEQUAL : GL_LESS);
+    glDepthMask(kept ? GL_FALSE : GL_TRUE);
+    while (!objects.empty()) {
+        const bool textured = objects[0].object->look.textured;
+        const auto end = std::find_if(objects.begin(), objects.end(), [&](const SeenObject& other) {
+            return other.object->look.textured != textured;
+        });
+        const auto alike = objects.first(static_cast<std::size_t>(end - objects.begin()));
+        glStencilFunc(kept ? GL_NOTEQUAL : GL_ALWAYS, kTaken | (textured ? kTextured : 0), kTaken);
+        draw_objects(shaders, Pass::surface, view, alike, scene.materials.count());
+        objects = objects.subspan(alike.size());
     }
-    draw_objects(shaders, Pass::surface, view, objects, scene.materials.count());
-    glDisable(GL_STENCIL_TEST);
     glDisable(GL_DEPTH_TEST);
+    glDisable(GL_STENCIL_TEST);
     glDepthMask(GL_TRUE);
 }
 
@@ -125,13 +137,24 @@ void Rasterizer::State::shade_pass(const GpuLights& lights) {
     glBindFramebuffer(GL_FRAMEBUFFER, frame.colour.name());
     bind(Unit::normal_t, GL_TEXTURE_2D, frame.normal_t.name());
     bind(Unit::material, GL_TEXTURE_2D, frame.material.name());
+    bind(Unit::lights, GL_TEXTURE_BUFFER, lights.texels.texture());
+    bind(Unit::sky_texels, GL_TEXTURE_BUFFER, scene.sky->texels.texture());
+    glEnable(GL_STENCIL_TEST);
+    glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+    glStencilFunc(GL_EQUAL, 0, kTextured);
+    shade_pixels(lights, false);
     if (frame.textured) {
         bind(Unit::uv, GL_TEXTURE_2D, frame.uv.name());
         bind(Unit::footprint, GL_TEXTURE_2D, frame.footprint.name());
+        glStencilFunc(GL_EQUAL, kTextured, kTextured);
+        shade_pixels(lights, true);
     }
-    bind(Unit::lights, GL_TEXTURE_BUFFER, lights.texels.texture());
-    bind(Unit::sky_texels, GL_TEXTURE_BUFFER, scene.sky->texels.texture());
-    const ShadeKind kind{frame.textured, std::holds_alternative<ImageSky>(scene.scene->environment),
+    glDisable(GL_STENCIL_TEST);
+}
+
+// Those that the stencil lets through.
+void Rasterizer::State::shade_pixels(const GpuLights& lights, bool textured) {
+    const ShadeKind kind{textured, std::holds_alternative<ImageSky>(scene.scene->environment),
                          lights.shaped};
     const Uniforms uniforms(shaders.shade(kind));
     uniforms.set("material_count", scene.materials.count());
