@@ -406,12 +406,12 @@ TEST_F(RasterizerTest, PrimitivesAreNumberedAsTheTracerNumbersThem) {
 
 TEST_F(RasterizerTest, MeshesInSeveralDrawsLookTheSame) {
     const Mesh mesh = sheet(20, true);
-    const GpuMesh whole(mesh, 1 << 16);
-    const GpuMesh parts(mesh, 64);
-    EXPECT_EQ(whole.chunks().size(), 1u);
-    ASSERT_GT(parts.chunks().size(), 8u);
+    const auto whole = upload_mesh(mesh, 1 << 16);
+    const auto parts = upload_mesh(mesh, 64);
+    EXPECT_EQ(whole->chunks().size(), 1u);
+    ASSERT_GT(parts->chunks().size(), 8u);
     std::uint32_t next = 0;
-    for (const GpuMesh::Chunk& chunk : parts.chunks()) {
+    for (const GpuMesh::Chunk& chunk : parts->chunks()) {
         EXPECT_EQ(chunk.first, next);
         next += chunk.count;
     }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace raypick {
@@ -46,24 +47,49 @@ Framebuffer make_framebuffer(std::span<const GLuint> colours, GLuint depth_stenc
     return framebuffer;
 }
 
-BufferTexture::BufferTexture(GLenum internal_format, std::size_t texel_bytes,
-                             std::span<const std::byte> bytes, const char* what)
-    : buffer_(new_buffer()), texture_(new_texture()) {
-    const std::size_t texels = bytes.size() / texel_bytes;
+BufferTexture::BufferTexture(GLenum internal_format, std::size_t texel_bytes, std::size_t texels,
+                             const char* what)
+    : buffer_(new_buffer()),
+      texture_(new_texture()),
+      // Never empty: a buffer texture over no storage reads undefined values.
+      bytes_(texel_bytes * std::max<std::size_t>(texels, 1)) {
     if (texels > max_buffer_texels()) {
         throw Error(fmt::format("{} {} are more than this OpenGL can hold ({})", texels, what,
                                 max_buffer_texels()));
     }
     glBindBuffer(GL_TEXTURE_BUFFER, buffer_.name());
-    // Never empty: a buffer texture over no storage reads undefined values.
-    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max(bytes.size(), texel_bytes)),
-                 nullptr, GL_STATIC_DRAW);
-    if (!bytes.empty()) {
-        glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
-    }
+    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(bytes_), nullptr, GL_STATIC_DRAW);
     glBindTexture(GL_TEXTURE_BUFFER, texture_.name());
     glTexBuffer(GL_TEXTURE_BUFFER, internal_format, buffer_.name());
     glBindBuffer(GL_TEXTURE_BUFFER, 0);
+}
+
+BufferTexture::BufferTexture(GLenum internal_format, std::size_t texel_bytes,
+                             std::span<const std::byte> bytes, const char* what)
+    : BufferTexture(internal_format, texel_bytes, bytes.size() / texel_bytes, what) {
+    if (bytes.empty()) return;
+    glBindBuffer(GL_TEXTURE_BUFFER, buffer_.name());
+    glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+    glBindBuffer(GL_TEXTURE_BUFFER, 0);
+}
+
+std::byte* BufferTexture::map() {
+    glBindBuffer(GL_TEXTURE_BUFFER, buffer_.name());
+    void* const memory = glMapBufferRange(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes_),
+                                          GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT);
+    glBindBuffer(GL_TEXTURE_BUFFER, 0);
+    if (memory == nullptr) {
+        check_gl("uploading the scene");
+        throw Error("uploading the scene: OpenGL gives no memory");
+    }
+    return static_cast<std::byte*>(memory);
+}
+
+void BufferTexture::unmap() {
+    glBindBuffer(GL_TEXTURE_BUFFER, buffer_.name());
+    const bool kept = glUnmapBuffer(GL_TEXTURE_BUFFER) == GL_TRUE;
+    glBindBuffer(GL_TEXTURE_BUFFER, 0);
+    if (!kept) throw Error("uploading the scene: OpenGL has lost what it was given");
 }
 
 KeepFramebuffer::KeepFramebuffer() {

@@ -36,12 +36,23 @@ public:
     BufferTexture(GLenum internal_format, std::size_t texel_bytes, std::span<const std::byte> bytes,
                   const char* what);
 
+    // With room for `texels`, whose content is what is written while it is mapped.
+    BufferTexture(GLenum internal_format, std::size_t texel_bytes, std::size_t texels,
+                  const char* what);
+
+    // All of it, to be written by any thread, and each byte before unmap(). Throws Error if OpenGL
+    // has no memory.
+    [[nodiscard]] std::byte* map();
+    // Throws Error if OpenGL has lost what was written.
+    void unmap();
+
     [[nodiscard]] GLuint texture() const { return texture_.name(); }
     [[nodiscard]] GLuint buffer() const { return buffer_.name(); }
 
 private:
     Buffer buffer_;
     GlTexture texture_;
+    std::size_t bytes_ = 0;
 };
 
 // Restores the framebuffer bindings that were there before.

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstddef>
-#include <utility>
+#include <optional>
 
 namespace raypick {
 
@@ -28,67 +28,84 @@ int pixel_beyond(float at, const PixelRange& within) {
         std::clamp(at + 0.5f, static_cast<float>(within.first), static_cast<float>(within.end)));
 }
 
-// The pixels of an axis that a triangle with these coordinates may take, of `count`.
-PixelRange pixels_of(float a, float b, float c, int count) {
-    const PixelRange all{0, count};
-    return {pixel_beyond(std::min(std::min(a, b), c) - kSpotMargin, all),
-            pixel_beyond(std::max(std::max(a, b), c) + kSpotMargin, all)};
-}
-
 // The line through two corners: a dx + b dy + c is 0 there and above 0 inside, where dx and dy
 // count from the triangle's first corner.
 struct Edge {
     float a = 0.0f;
     float b = 0.0f;
     float c = 0.0f;
-    float per_a = 0.0f;
-    float margin = 0.0f;  // how far a move by kSpotMargin shifts the line along a row
+    float margin = 0.0f;  // this is what a move by kSpotMargin changes at most
 
-    Edge(const Spot& from, const Spot& to, const Spot& origin) {
-        constexpr float kLeast = 1e-15f;  // keeps the quotient finite where the line is level
-        a = std::abs(from.y - to.y) > kLeast ? from.y - to.y : kLeast;
-        b = to.x - from.x;
+    Edge(const Spot& from, const Spot& to, const Spot& origin)
+        : a(from.y - to.y), b(to.x - from.x) {
         c = -a * (from.x - origin.x) - b * (from.y - origin.y);
-        per_a = 1.0f / a;
-        margin = kSpotMargin * (1.0f + std::abs(b * per_a));
+        margin = kSpotMargin * (std::abs(a) + std::abs(b));
     }
 };
 
-// A triangle at work on pixels.
+// Columns of a row.
+struct Columns {
+    PixelRange touched;  // their centres may be inside
+    PixelRange inside;   // they are for sure
+};
+
+// A triangle at work on rows of pixels.
 class Walk {
 public:
-    Walk(const SpotTriangle& t, float area)
+    // The corners in the turn that has the inside above 0.
+    explicit Walk(const SpotTriangle& t)
         : edges_{Edge(t[0], t[1], t[0]), Edge(t[1], t[2], t[0]), Edge(t[2], t[0], t[0])},
-          origin_(t[0]),
-          nearest_(std::max(std::max(t[0].nearness, t[1].nearness), t[2].nearness)) {
-        const float n1 = t[1].nearness - t[0].nearness;
-        const float n2 = t[2].nearness - t[0].nearness;
-        // Nearness is linear on the image.
-        const float per_area = 1.0f / area;
-        by_x_ = (n1 * (t[2].y - t[0].y) - n2 * (t[1].y - t[0].y)) * per_area;
-        by_y_ = (n2 * (t[1].x - t[0].x) - n1 * (t[2].x - t[0].x)) * per_area;
-        uncertain_ = kSpotMargin * (std::abs(by_x_) + std::abs(by_y_));
-    }
+          origin_(t[0]) {}
 
-    // Columns of a row.
-    struct Columns {
-        PixelRange touched;  // their centres may be inside
-        PixelRange inside;   // they are for sure
-    };
     [[nodiscard]] Columns columns(int row, const PixelRange& within) const {
         const float dy = static_cast<float>(row) + 0.5f - origin_.y;
+        return within.end - within.first <= kFewColumns ? few_columns(dy, within)
+                                                        : many_columns(dy, within);
+    }
+
+private:
+    static constexpr int kFewColumns = 4;
+
+    // Asks each pixel.
+    [[nodiscard]] Columns few_columns(float dy, const PixelRange& within) const {
+        Columns columns{{within.end, within.first}, {within.end, within.first}};
+        for (int col = within.first; col < within.end; ++col) {
+            const float dx = static_cast<float>(col) + 0.5f - origin_.x;
+            float least_outside = 0.0f;  // below 0: too far outside of some edge
+            float least_inside = 0.0f;
+            for (const Edge& edge : edges_) {
+                const float value = edge.a * dx + edge.b * dy + edge.c;
+                least_outside = std::min(least_outside, value + edge.margin);
+                least_inside = std::min(least_inside, value - edge.margin);
+            }
+            if (least_outside >= 0.0f) widen(columns.touched, col);
+            if (least_inside >= 0.0f) widen(columns.inside, col);
+        }
+        return columns;
+    }
+
+    static void widen(PixelRange& range, int col) {
+        range.first = std::min(range.first, col);
+        range.end = std::max(range.end, col + 1);
+    }
+
+    // Asks the edges where they cross the row.
+    [[nodiscard]] Columns many_columns(float dy, const PixelRange& within) const {
+        constexpr float kLeast = 1e-15f;  // keeps the quotient finite where the line is level
         float low = -1e9f;
         float high = 1e9f;
         float low_inside = low;
         float high_inside = high;
         for (const Edge& edge : edges_) {
-            const float at = -(edge.b * dy + edge.c) * edge.per_a;
-            if (edge.a > 0.0f) {
-                low = std::max(low, at - edge.margin);
-                low_inside = std::max(low_inside, at + edge.margin);
+            const float a = std::abs(edge.a) > kLeast ? edge.a : kLeast;
+            const float at = -(edge.b * dy + edge.c) / a;
+            const float margin = edge.margin / std::abs(a);
+            if (a > 0.0f) {
+                low = std::max(low, at - margin);
+                low_inside = std::max(low_inside, at + margin);
             } else {
-                high = std::min(high, at + edge.margin);
-                high_inside = std::min(high_inside, at - edge.margin);
+                high = std::min(high, at + margin);
+                high_inside = std::min(high_inside, at - margin);
             }
         }
         const float x = origin_.x;
@@ -96,28 +113,8 @@ public:
                 {pixel_beyond(x + low_inside, within), pixel_beyond(x + high_inside, within)}};
     }
 
-    // Nearness in a row: at the centre of column 0, and how it grows by column. Where the triangle
-    // is steep it is known less well: `side` 1 gives the least that it may be, -1 the greatest.
-    struct Slope {
-        float at_0 = 0.0f;
-        float by_col = 0.0f;
-
-        [[nodiscard]] float at(int col) const { return at_0 + by_col * static_cast<float>(col); }
-    };
-    [[nodiscard]] Slope nearness(int row, float side) const {
-        const float dy = static_cast<float>(row) + 0.5f - origin_.y;
-        return {origin_.nearness + by_y_ * dy + by_x_ * (0.5f - origin_.x) - side * uncertain_,
-                by_x_};
-    }
-    [[nodiscard]] float nearest() const { return nearest_; }
-
-private:
     std::array<Edge, 3> edges_;
     Spot origin_;
-    float nearest_;
-    float by_x_ = 0.0f;
-    float by_y_ = 0.0f;
-    float uncertain_ = 0.0f;
 };
 
 // Twice the triangle's, with the sign of its turn.
@@ -125,11 +122,61 @@ float twice_area(const SpotTriangle& t) {
     return (t[1].x - t[0].x) * (t[2].y - t[0].y) - (t[1].y - t[0].y) * (t[2].x - t[0].x);
 }
 
-// The triangle in the turn that has the inside above 0.
-Walk walk_of(const SpotTriangle& t) {
-    const float area = twice_area(t);
-    return area < 0.0f ? Walk({t[0], t[2], t[1]}, -area) : Walk(t, area);
+SpotTriangle turned_left(const SpotTriangle& t) {
+    return twice_area(t) < 0.0f ? SpotTriangle{t[0], t[2], t[1]} : t;
 }
+
+float least(float a, float b, float c) {
+    return std::min(std::min(a, b), c);
+}
+float greatest(float a, float b, float c) {
+    return std::max(std::max(a, b), c);
+}
+
+// The pixels that a triangle may take.
+struct PixelBox {
+    PixelRange cols;
+    PixelRange rows;
+};
+PixelBox pixel_box(const SpotTriangle& t, ImageSize size) {
+    const PixelRange cols{0, size.cols};
+    const PixelRange rows{0, size.rows};
+    return {{pixel_beyond(least(t[0].x, t[1].x, t[2].x) - kSpotMargin, cols),
+             pixel_beyond(greatest(t[0].x, t[1].x, t[2].x) + kSpotMargin, cols)},
+            {pixel_beyond(least(t[0].y, t[1].y, t[2].y) - kSpotMargin, rows),
+             pixel_beyond(greatest(t[0].y, t[1].y, t[2].y) + kSpotMargin, rows)}};
+}
+
+// Nearness over the image, which is linear there. Where the triangle is steep it is known less
+// well: `side` 1 gives the least that it may be, -1 the greatest.
+class NearnessPlane {
+public:
+    NearnessPlane(const SpotTriangle& t, float side) : origin_(t[0]) {
+        const float n1 = t[1].nearness - t[0].nearness;
+        const float n2 = t[2].nearness - t[0].nearness;
+        const float per_area = 1.0f / twice_area(t);
+        by_x_ = (n1 * (t[2].y - t[0].y) - n2 * (t[1].y - t[0].y)) * per_area;
+        by_y_ = (n2 * (t[1].x - t[0].x) - n1 * (t[2].x - t[0].x)) * per_area;
+        origin_.nearness -= side * kSpotMargin * (std::abs(by_x_) + std::abs(by_y_));
+    }
+
+    // At the centre of a row's column 0, and how it grows by column.
+    struct Slope {
+        float at_0 = 0.0f;
+        float by_col = 0.0f;
+
+        [[nodiscard]] float at(int col) const { return at_0 + by_col * static_cast<float>(col); }
+    };
+    [[nodiscard]] Slope in_row(int row) const {
+        const float dy = static_cast<float>(row) + 0.5f - origin_.y;
+        return {origin_.nearness + by_y_ * dy + by_x_ * (0.5f - origin_.x), by_x_};
+    }
+
+private:
+    Spot origin_;
+    float by_x_ = 0.0f;
+    float by_y_ = 0.0f;
+};
 
 void raise(float& cell, float nearness) {
     std::atomic_ref<float> shared(cell);
@@ -144,17 +191,19 @@ void raise(float& cell, float nearness) {
 Cover::Cover(ImageSize size, float pixel)
     : size_(size), pixel_(pixel), nearness_(size.pixel_count()) {}
 
-bool Cover::add(const SpotTriangle& t, bool hides) {
-    const PixelRange cols = pixels_of(t[0].x, t[1].x, t[2].x, size_.cols);
-    const PixelRange rows = pixels_of(t[0].y, t[1].y, t[2].y, size_.rows);
-    if (cols.empty() || rows.empty()) return false;
-    const Walk walk = walk_of(t);
+bool Cover::add(const SpotTriangle& triangle, bool hides) {
+    const PixelBox box = pixel_box(triangle, size_);
+    if (box.cols.empty() || box.rows.empty()) return false;
+    const SpotTriangle t = turned_left(triangle);
+    const Walk walk(t);
+    std::optional<NearnessPlane> plane;
     bool takes_pixels = false;
-    for (int row = rows.first; row < rows.end; ++row) {
-        const auto [touched, inside] = walk.columns(row, cols);
+    for (int row = box.rows.first; row < box.rows.end; ++row) {
+        const auto [touched, inside] = walk.columns(row, box.cols);
         takes_pixels = takes_pixels || !touched.empty();
         if (!hides || inside.empty()) continue;
-        const Walk::Slope nearness = walk.nearness(row, 1.0f);
+        if (!plane) plane.emplace(t, 1.0f);
+        const NearnessPlane::Slope nearness = plane->in_row(row);
         float* const cells = nearness_.data() + static_cast<std::ptrdiff_t>(row) * size_.cols;
         for (int col = inside.first; col < inside.end; ++col)
             raise(cells[col], nearness.at(col));
@@ -169,9 +218,12 @@ bool Cover::add(const SpotTriangle& t, bool hides) {
 // gives the distance; so many times further than the point itself may that one move.
 float Cover::shift(const SpotTriangle& t, float stretch) const {
     constexpr float kFastest = 1.7321f;  // no direction has all its coordinates below 1 / this
-    const auto [min_x, max_x] = std::minmax({t[0].x, t[1].x, t[2].x});
-    const auto [min_y, max_y] = std::minmax({t[0].y, t[1].y, t[2].y});
-    const auto [far, near] = std::minmax({t[0].nearness, t[1].nearness, t[2].nearness});
+    const float min_x = least(t[0].x, t[1].x, t[2].x);
+    const float max_x = greatest(t[0].x, t[1].x, t[2].x);
+    const float min_y = least(t[0].y, t[1].y, t[2].y);
+    const float max_y = greatest(t[0].y, t[1].y, t[2].y);
+    const float far = least(t[0].nearness, t[1].nearness, t[2].nearness);
+    const float near = greatest(t[0].nearness, t[1].nearness, t[2].nearness);
     const float size = (max_x - min_x) + (max_y - min_y);
     // Of each corner's weight, the margin over its height; no edge is longer than `size`.
     const float outside = 3.0f * kSpotMargin * size / std::abs(twice_area(t)) * (near / far);
@@ -185,20 +237,22 @@ float Cover::shift(const SpotTriangle& t, float stretch) const {
     return share * kFastest * stretch * extent;
 }
 
-bool Cover::hidden(const SpotTriangle& t, float stretch) const {
-    const PixelRange cols = pixels_of(t[0].x, t[1].x, t[2].x, size_.cols);
-    const PixelRange rows = pixels_of(t[0].y, t[1].y, t[2].y, size_.rows);
-    const Walk walk = walk_of(t);
-    const float shift_at_edge = shift(t, stretch);
+bool Cover::hidden(const SpotTriangle& triangle, float stretch) const {
+    const float shift_at_edge = shift(triangle, stretch);
     if (!(shift_at_edge < 0.5f)) return false;
     const float at_edge = (1.0f + kGap) / (1.0f - shift_at_edge);
-    for (int row = rows.first; row < rows.end; ++row) {
-        const auto [touched, inside] = walk.columns(row, cols);
-        const Walk::Slope nearness = walk.nearness(row, -1.0f);
+    const PixelBox box = pixel_box(triangle, size_);
+    const SpotTriangle t = turned_left(triangle);
+    const Walk walk(t);
+    const NearnessPlane plane(t, -1.0f);
+    const float nearest = greatest(t[0].nearness, t[1].nearness, t[2].nearness);
+    for (int row = box.rows.first; row < box.rows.end; ++row) {
+        const auto [touched, inside] = walk.columns(row, box.cols);
+        const NearnessPlane::Slope nearness = plane.in_row(row);
         const float* const cells = nearness_.data() + static_cast<std::ptrdiff_t>(row) * size_.cols;
         for (int col = touched.first; col < touched.end; ++col) {
             // The slope of what has no area is no number: min() then takes the first.
-            const float there = std::min(walk.nearest(), nearness.at(col));
+            const float there = std::min(nearest, nearness.at(col));
             const bool within = col >= inside.first && col < inside.end;
             if (!(cells[col] > there * (within ? 1.0f + kGap : at_edge))) return false;
         }

@@ -1,6 +1,7 @@
 #include "viewer/raster/gpu_scene.h"
 
 #include "tracer/error.h"
+#include "tracer/parallel/parallel.h"
 #include "viewer/gl/load_gl.h"
 
 #include <algorithm>
@@ -14,13 +15,20 @@ std::vector<std::shared_ptr<const GpuMesh>> upload_meshes(const Scene& scene,
                                                           const GpuScene& before) {
     const std::size_t max_texels = max_buffer_texels();
     std::vector<std::shared_ptr<const GpuMesh>> meshes;
+    std::vector<std::shared_ptr<GpuMesh>> fresh;
     meshes.reserve(scene.meshes.size());
     for (const Mesh& mesh : scene.meshes) {
         const auto known = std::find_if(before.meshes.begin(), before.meshes.end(),
                                         [&mesh](const auto& other) { return other->holds(mesh); });
-        meshes.push_back(
-            known != before.meshes.end() ? *known : std::make_shared<GpuMesh>(mesh, max_texels));
+        if (known != before.meshes.end()) {
+            meshes.push_back(*known);
+        } else {
+            meshes.push_back(fresh.emplace_back(std::make_shared<GpuMesh>(mesh, max_texels)));
+        }
     }
+    parallel_for(fresh.size(), 0, {}, [&](std::size_t i) { fresh[i]->fill(); });
+    for (const std::shared_ptr<GpuMesh>& mesh : fresh)
+        mesh->finish();
     return meshes;
 }
 
@@ -67,7 +75,7 @@ std::shared_ptr<const GpuMesh> upload_triangle(const Triangle& triangle) {
                       glm::vec3(triangle.c - triangle.a)};
     data.uvs = {glm::vec2(0.0f), glm::vec2(1.0f, 0.0f), glm::vec2(0.0f, 1.0f)};  // barycentric
     data.triangles = {glm::uvec3(0, 1, 2)};
-    return std::make_shared<GpuMesh>(make_mesh("triangle", std::move(data)), max_buffer_texels());
+    return upload_mesh(make_mesh("triangle", std::move(data)), max_buffer_texels());
 }
 
 Transform inverse_of(const Object& object, const Transform& transform) {

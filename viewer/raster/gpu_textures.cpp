@@ -1,5 +1,6 @@
 #include "viewer/raster/gpu_textures.h"
 
+#include "tracer/parallel/parallel.h"
 #include "viewer/gl/load_gl.h"
 
 #include <fmt/format.h>
@@ -65,15 +66,20 @@ int make_fit(std::vector<PackedImage>& images, std::size_t max_texels) {
     return left_out;
 }
 
-std::vector<glm::u8vec4> join_texels(const std::vector<PackedImage>& images) {
-    std::vector<glm::u8vec4> texels;
-    texels.reserve(total_texels(images));
-    for (const PackedImage& image : images) {
-        const auto first = static_cast<std::ptrdiff_t>(image.first_texel());
-        texels.insert(texels.end(), image.pixels->texels.begin() + first,
-                      image.pixels->texels.end());
-    }
-    return texels;
+// One image's behind the other's.
+BufferTexture join_texels(const std::vector<PackedImage>& images) {
+    BufferTexture joined(GL_RGBA8, sizeof(glm::u8vec4), total_texels(images), "texels");
+    if (images.empty()) return joined;
+    std::vector<std::byte*> places{joined.map()};
+    for (const PackedImage& image : images)
+        places.push_back(places.back() + sizeof(glm::u8vec4) * image.texel_count());
+    parallel_for(images.size(), 0, {}, [&](std::size_t i) {
+        const PackedImage& image = images[i];
+        std::memcpy(places[i], image.pixels->texels.data() + image.first_texel(),
+                    sizeof(glm::u8vec4) * image.texel_count());
+    });
+    joined.unmap();
+    return joined;
 }
 
 glm::uvec4 bits(const glm::vec4& v) {
@@ -147,8 +153,7 @@ GpuTextures pack_textures(const std::vector<Texture>& textures, std::size_t max_
             max_texels, left_out);
     }
     const std::vector<glm::uvec4> table = make_table(textures, images);
-    const std::vector<glm::u8vec4> texels = join_texels(images);
-    gpu.texels = {GL_RGBA8, sizeof(glm::u8vec4), std::as_bytes(std::span(texels)), "texels"};
+    gpu.texels = join_texels(images);
     gpu.table = {GL_RGBA32UI, sizeof(glm::uvec4), std::as_bytes(std::span(table)),
                  "texture levels"};
     return gpu;

@@ -18,7 +18,7 @@ constexpr float kNearMargin = 1e-3f;
 
 struct SpotFinder {
     glm::mat3 clip_from_object;
-    glm::mat3 magnitude;  // its absolute values
+    glm::vec3 error;  // of clip coordinates, times the sum of a vector's magnitudes
     glm::vec3 eye_high;
     glm::vec3 eye_low;
     float near = 0.0f;
@@ -29,26 +29,27 @@ struct SpotFinder {
     [[nodiscard]] Spot operator()(const glm::vec3& position) const {
         const glm::vec3 v = (position - eye_high) - eye_low;
         const glm::vec3 clip = clip_from_object * v;
-        const glm::vec3 error = kRounding * (magnitude * glm::abs(v));
-        const float w = orthographic ? 1.0f : clip.z;
-        const float w_error = orthographic ? 0.0f : error.z;
-        const float x = clip.x / w;
-        const float y = clip.y / w;
-        Spot spot{half_cols * (1.0f + x), half_rows * (1.0f + y), kUnknown};
-        if (clip.z + error.z < (1.0f - kNearMargin) * near) spot.nearness = kClipped;
+        const glm::vec3 off = error * (std::abs(v.x) + std::abs(v.y) + std::abs(v.z));
+        const float per_w = orthographic ? 1.0f : 1.0f / clip.z;
+        const float w_off = orthographic ? 0.0f : off.z;
+        const float x = clip.x * per_w;
+        const float y = clip.y * per_w;
+        const float off_x = half_cols * (off.x + std::abs(x) * w_off);
+        const float off_y = half_rows * (off.y + std::abs(y) * w_off);
         // NaN and infinities stay unknown.
-        const float off_x = half_cols * (error.x + std::abs(x) * w_error);
-        const float off_y = half_rows * (error.y + std::abs(y) * w_error);
-        if (clip.z - error.z > (1.0f + kNearMargin) * near &&
-            std::max(off_x, off_y) <= kTolerated * w) {
-            spot.nearness = 1.0f / w;
-        }
-        return spot;
+        const bool known = clip.z - off.z > (1.0f + kNearMargin) * near &&
+                           std::max(off_x, off_y) * per_w <= kTolerated;
+        const bool clipped = clip.z + off.z < (1.0f - kNearMargin) * near;
+        return {half_cols * (1.0f + x), half_rows * (1.0f + y),
+                known     ? per_w
+                : clipped ? kClipped
+                          : kUnknown};
     }
 };
 
-glm::mat3 absolute(const glm::mat3& m) {
-    return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])};
+// The greatest entry of each row.
+glm::vec3 largest_terms(const glm::mat3& m) {
+    return glm::max(glm::max(glm::abs(m[0]), glm::abs(m[1])), glm::abs(m[2]));
 }
 
 }  // namespace
@@ -56,7 +57,7 @@ glm::mat3 absolute(const glm::mat3& m) {
 void find_spots(const ViewNumbers& view, const MeshNumbers& mesh,
                 std::span<const glm::vec3> positions, std::span<Spot> spots) {
     const SpotFinder spot_of{mesh.clip_from_object,
-                             absolute(mesh.clip_from_object),
+                             kRounding * largest_terms(mesh.clip_from_object),
                              mesh.eye_high,
                              mesh.eye_low,
                              static_cast<float>(view.near),
