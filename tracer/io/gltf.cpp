@@ -8,13 +8,16 @@
 #include "tracer/io/gltf_textures.h"
 #include "tracer/io/load_steps.h"
 #include "tracer/io/mesh_build.h"
+#include "tracer/parallel/parallel.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <exception>
 #include <map>
 #include <optional>
 #include <string>
@@ -76,6 +79,7 @@ public:
 
     LoadedScene read() {
         read_materials();
+        read_meshes();
         mesh_ids_.resize(document_.array("meshes").size());
         visited_.resize(document_.array("nodes").size());
         for (std::size_t i = roots().size(); i-- > 0;)
@@ -103,7 +107,15 @@ private:
     // Every node's path names all its ancestors; no model's tree is anywhere near as deep.
     static constexpr int kMaxDepth = 1000;
 
-    static constexpr float kNodesDone = 0.7f;  // of the progress; the rest are textures
+    // Of the progress; the rest are textures.
+    static constexpr float kMeshesDone = 0.65f;
+    static constexpr float kNodesDone = 0.7f;
+
+    // What became of a mesh: it was read, or can't be, or nobody has tried.
+    struct MeshOutcome {
+        std::optional<GltfMesh> mesh;
+        std::exception_ptr complaint;
+    };
 
     void read_materials() {
         const std::vector<JsonValue>& materials = document_.array("materials");
@@ -114,6 +126,42 @@ private:
             const MaterialId id = add_material(loaded_.scene, material_from(material));
             textures_.request(id, std::move(material));
         }
+    }
+
+    // Those that nodes show, side by side. A complaint about one is raised where a node asks for
+    // it.
+    void read_meshes() {
+        mesh_outcomes_.resize(document_.array("meshes").size());
+        const std::vector<std::size_t> shown = shown_meshes();
+        std::atomic<std::size_t> done = 0;
+        parallel_for(shown.size(), 0, options_.stop, [&](std::size_t i) {
+            MeshOutcome& outcome = mesh_outcomes_[shown[i]];
+            try {
+                outcome.mesh = read_gltf_mesh(document_, shown[i], mesh_name(shown[i]), uv_sets_);
+            } catch (...) {
+                outcome.complaint = std::current_exception();
+            }
+            if (options_.progress == nullptr) return;
+            options_.progress->store(kMeshesDone * static_cast<float>(++done) /
+                                     static_cast<float>(shown.size()));
+        });
+    }
+
+    [[nodiscard]] std::vector<std::size_t> shown_meshes() const {
+        std::vector<bool> is_shown(mesh_outcomes_.size());
+        for (const JsonValue& node : document_.array("nodes")) {
+            try {
+                const std::optional<JsonValue> mesh = node.find("mesh");
+                if (mesh) is_shown[document_.index(*mesh, "meshes")] = true;
+            } catch (const FileError&) {
+                // Raised again if the node is reached.
+            }
+        }
+        std::vector<std::size_t> shown;
+        for (std::size_t i = 0; i < is_shown.size(); ++i) {
+            if (is_shown[i]) shown.push_back(i);
+        }
+        return shown;
     }
 
     // The nodes of the scene that the file shows; without scenes, all that are nobody's child.
@@ -165,8 +213,9 @@ private:
     }
 
     void read_node(const Visit& visit) {
-        load_step(options_, kNodesDone * static_cast<float>(++nodes_read_) /
-                                static_cast<float>(visited_.size() + 1));
+        const float share =
+            static_cast<float>(++nodes_read_) / static_cast<float>(visited_.size() + 1);
+        load_step(options_, kMeshesDone + (kNodesDone - kMeshesDone) * share);
         const JsonValue& node = document_.array("nodes")[visit.node];
         if (visited_[visit.node]) node.fail("is reached twice: the nodes must form trees");
         visited_[visit.node] = true;
@@ -240,11 +289,13 @@ private:
         add_object(loaded_.scene, std::move(object));
     }
 
-    // Each mesh is read once, however many nodes show it. Nothing if it has no triangles.
+    // Each mesh is there once, however many nodes show it. Nothing if it has no triangles.
     std::optional<MeshId> mesh_id(std::size_t index) {
         std::optional<std::optional<MeshId>>& known = mesh_ids_[index];
         if (known) return *known;
-        GltfMesh mesh = read_gltf_mesh(document_, index, mesh_name(index), uv_sets_);
+        MeshOutcome& outcome = mesh_outcomes_[index];
+        if (outcome.complaint) std::rethrow_exception(outcome.complaint);
+        GltfMesh mesh = *std::exchange(outcome.mesh, std::nullopt);
         has_lines_ |= mesh.has_lines;
         has_morphs_ |= mesh.has_morphs;
         known.emplace();
@@ -316,6 +367,7 @@ private:
     std::optional<std::vector<std::size_t>> roots_;
     std::vector<Visit> todo_;
     std::vector<bool> visited_;
+    std::vector<MeshOutcome> mesh_outcomes_;
     std::vector<std::optional<std::optional<MeshId>>> mesh_ids_;
     std::unordered_map<std::string, int> path_uses_;
     std::size_t nodes_read_ = 0;

@@ -178,6 +178,7 @@ std::string_view GltfDocument::buffer_view(std::size_t index) {
 }
 
 std::string_view GltfDocument::buffer(std::size_t index) {
+    const std::scoped_lock lock(buffers_mutex_);
     if (buffers_[index]) return *buffers_[index];
     const JsonValue& json = array("buffers")[index];
     const std::string_view bytes = load_buffer(index);

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <list>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,7 +37,8 @@ public:
     // The element of array `name` that `reference` (an index) names; fails if there is none.
     [[nodiscard]] std::size_t index(const JsonValue& reference, std::string_view name) const;
 
-    // Bytes of a buffer view; read from beside the file or decoded when first asked for.
+    // Bytes of a buffer view; read from beside the file or decoded when first asked for. Several
+    // threads may ask at once.
     std::string_view buffer_view(std::size_t index);
 
     // The image of an element of /textures, wherever it is stored. What is wrong with it becomes
@@ -62,6 +64,7 @@ private:
     Json json_;
     std::map<std::string, std::vector<JsonValue>, std::less<>> arrays_;
     std::vector<JsonValue> none_;
+    std::mutex buffers_mutex_;
     std::vector<std::optional<std::string_view>> buffers_;
     std::list<std::string> decoded_;  // lists, because views point into them
     std::list<FileBytes> beside_;

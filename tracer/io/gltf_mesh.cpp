@@ -53,6 +53,14 @@ public:
     [[nodiscard]] const Key& key() const { return key_; }
     [[nodiscard]] std::size_t count() const { return position_.count(); }
 
+    // Makes room for what so many corners may take.
+    void reserve(std::size_t corners, MeshData& data) const {
+        const std::size_t most = std::min(corners, count());
+        data.positions.reserve(most);
+        data.normals.reserve(most);
+        data.uvs.reserve(most);
+    }
+
     // The number in `data` of vertex i; its arrays are all filled, with 0 where nothing is given.
     std::uint32_t take(std::size_t i, MeshData& data) {
         if (vertex_[i] != kNone) return vertex_[i];
@@ -145,6 +153,8 @@ private:
         const GltfAccessor indices(document_, document_.index(*reference, "accessors"), "SCALAR");
         if (!indices.holds_indices()) reference->fail("the accessor does not hold indices");
         corners_.reserve(indices.count());
+        // Of the first primitive only: making room each time would move all that is there.
+        if (data_.positions.empty()) source.reserve(indices.count(), data_);
         for (std::size_t i = 0; i < indices.count(); ++i) {
             const std::uint32_t index = indices.index(i);
             if (index >= source.count()) {
@@ -157,7 +167,6 @@ private:
 
     void add_triangles(Mode mode) {
         const std::size_t step = mode == Mode::triangles ? 3 : 1;
-        // Of the first primitive only: making room each time would move all that is there.
         if (data_.triangles.empty()) data_.triangles.reserve(corners_.size() / step);
         for (std::size_t i = 0; i + 2 < corners_.size(); i += step) {
             const std::uint32_t a = corners_[mode == Mode::fan ? 0 : i];
