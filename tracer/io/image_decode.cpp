@@ -104,8 +104,11 @@ FloatImage float_image(std::string_view bytes, int rows, int cols) {
 ByteImage byte_image(std::string_view bytes, int rows, int cols) {
     const auto pixels = decoded<unsigned char>(bytes, stbi_load_from_callbacks);
     ByteImage image{rows, cols, {}};
-    image.texels.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols));
-    std::memcpy(image.texels.data(), pixels.get(), 4 * image.texels.size());
+    const std::size_t count = static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols);
+    // A texture's smaller levels will follow them, a third as many, and the last ones' ends.
+    image.texels.reserve(count + count / 3 + static_cast<std::size_t>(rows + cols));
+    const auto* const texels = reinterpret_cast<const glm::u8vec4*>(pixels.get());
+    image.texels.assign(texels, texels + count);
     return image;
 }
 

@@ -31,7 +31,7 @@ void in_parallel(std::size_t count, const LoadOptions& options, float begin, flo
     load_step(options, end);
 }
 
-std::shared_ptr<const ByteImage> placeholder_image() {
+std::shared_ptr<ByteImage> placeholder_image() {
     const std::shared_ptr<const TexturePixels> pixels = placeholder_texture();
     const TextureLevel& level = pixels->levels.front();
     const auto count = static_cast<std::ptrdiff_t>(level.rows) * level.cols;
@@ -69,7 +69,7 @@ void TextureLibrary::decode(Entry& entry) {
 void TextureLibrary::decode(const LoadOptions& options, float progress_begin, float progress_end) {
     in_parallel(entries_.size(), options, progress_begin, progress_end,
                 [&](std::size_t i) { decode(entries_[i]); });
-    std::shared_ptr<const ByteImage> placeholder;
+    std::shared_ptr<ByteImage> placeholder;
     std::set<std::string> told;
     for (Entry& entry : entries_) {
         if (entry.pixels) continue;
@@ -89,8 +89,8 @@ TextureId TextureLibrary::texture(ImageNumber image) {
     const char* const coding = entry.coding == TexelCoding::srgb ? "colour" : "data";
     const std::string key =
         entry.broken ? "placeholder" : fmt::format("{} {}", coding, entry.source.name);
-    const TextureId id = baked(key, entry.broken ? TexelCoding::srgb : entry.coding,
-                               [pixels = entry.pixels] { return *pixels; });
+    const TexelCoding shown = entry.broken ? TexelCoding::srgb : entry.coding;
+    const TextureId id = texture_of(key, {kNoTexture, shown, nullptr, entry.pixels});
     Texture& texture = target_->scene.textures[id];
     texture.name = entry.broken ? "missing" : clean_name(entry.source.name);
     if (!entry.broken) std::get<ImageTexture>(texture.source).file = entry.source.file;
@@ -99,25 +99,39 @@ TextureId TextureLibrary::texture(ImageNumber image) {
 
 TextureId TextureLibrary::baked(const std::string& key, TexelCoding coding,
                                 std::function<ByteImage()> bake) {
+    return texture_of(key, {kNoTexture, coding, std::move(bake)});
+}
+
+TextureId TextureLibrary::texture_of(const std::string& key, Job job) {
     const auto [known, is_new] = textures_.try_emplace(key, kNoTexture);
     if (is_new) {
         known->second = add_texture(target_->scene, Texture{clean_name(key), ImageTexture{}});
-        jobs_.push_back({known->second, coding, std::move(bake)});
+        job.texture = known->second;
+        jobs_.push_back(std::move(job));
     }
     return known->second;
 }
 
+ByteImage TextureLibrary::image_of(Job& job) {
+    if (job.as_it_is) return job.last ? std::move(*job.as_it_is) : *job.as_it_is;
+    ByteImage image = job.bake();
+    job.bake = nullptr;  // and with it the images that it looked at
+    return image;
+}
+
 void TextureLibrary::make(const LoadOptions& options, float progress_begin, float progress_end) {
+    entries_.clear();
+    numbers_.clear();
+    for (Job& job : jobs_)
+        job.last = job.as_it_is.use_count() == 1;
     in_parallel(jobs_.size(), options, progress_begin, progress_end, [&](std::size_t i) {
         Job& job = jobs_[i];
-        ByteImage image = job.bake();
-        job.bake = nullptr;  // and with it the images that it looked at
+        ByteImage image = image_of(job);
+        job.as_it_is.reset();
         std::get<ImageTexture>(target_->scene.textures[job.texture].source).pixels =
             make_texture_pixels(image.rows, image.cols, std::move(image.texels), job.coding);
     });
     jobs_.clear();
-    entries_.clear();
-    numbers_.clear();
 }
 
 bool is_uniform(const ByteImage& image, int channel) {

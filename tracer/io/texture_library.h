@@ -43,7 +43,7 @@ public:
 
     // After decode(). A broken image is the placeholder's.
     [[nodiscard]] bool broken(ImageNumber image) const { return entries_[image].broken; }
-    [[nodiscard]] const std::shared_ptr<const ByteImage>& pixels(ImageNumber image) const {
+    [[nodiscard]] std::shared_ptr<const ByteImage> pixels(ImageNumber image) const {
         return entries_[image].pixels;
     }
     [[nodiscard]] const std::string& name(ImageNumber image) const {
@@ -63,7 +63,7 @@ private:
     struct Entry {
         ImageSource source;
         TexelCoding coding = TexelCoding::srgb;
-        std::shared_ptr<const ByteImage> pixels;
+        std::shared_ptr<ByteImage> pixels;
         std::string complaint;
         bool broken = false;
     };
@@ -71,9 +71,13 @@ private:
         TextureId texture = kNoTexture;
         TexelCoding coding = TexelCoding::srgb;
         std::function<ByteImage()> bake;
+        std::shared_ptr<ByteImage> as_it_is{};  // instead
+        bool last = false;                      // nobody else looks at that
     };
 
     static void decode(Entry& entry);
+    static ByteImage image_of(Job& job);
+    TextureId texture_of(const std::string& key, Job job);
 
     LoadedScene* target_;
     std::vector<Entry> entries_;
