@@ -55,21 +55,21 @@ bool only_move(const std::vector<InputAction>& actions) {
 
 }  // namespace
 
-App::App(const ViewOptions& options, Window& window, InputState& input)
+App::App(const ViewOptions& options, Window& window, InputState& input,
+         std::unique_ptr<DocumentOpener> opener)
     : options_(options),
       window_(window),
       input_(input),
       ui_scale_(chosen_scale(options.ui_scale, window)),
       ui_(window, ui_scale_),
       view_(Window::wake),
-      opener_(Window::wake),
+      opener_(std::move(opener)),
       trees_(Window::wake),
       saver_(Window::wake),
       trace_(options.trace) {
     settings_.depth = options.depth;
     layout_ = lay_out(window_.metrics(), ui_scale_, panels_);
     settle();
-    if (!options.file.empty()) open(options.file);
 }
 
 void App::run() {
@@ -89,7 +89,7 @@ void App::settle() {
 }
 
 bool App::working() const {
-    return opener_.progress().has_value() || saver_.busy() || view_.busy();
+    return opener_->progress().has_value() || saver_.busy() || view_.busy();
 }
 
 double App::patience() const {
@@ -130,11 +130,11 @@ void App::remember_screen() {
 }
 
 void App::open(const std::filesystem::path& file) {
-    opener_.open(file, options_.crease_degrees, next_object_id_);
+    opener_->open(file, options_.crease_degrees, next_object_id_);
 }
 
 void App::take_results() {
-    if (std::optional<OpenResult> result = opener_.take_result()) {
+    if (std::optional<OpenResult> result = opener_->take_result()) {
         settle();
         if (auto* document = std::get_if<Document>(&*result)) {
             take(std::move(*document));
@@ -178,7 +178,7 @@ void App::take(Document document) {
 
 // After a frame, so that the first one of a scene is there before anything else is begun.
 void App::update_trees() {
-    if (!trees_.update(opener_.progress().has_value())) return;
+    if (!trees_.update(opener_->progress().has_value())) return;
     settle();
     const BuildProgress& trees = trees_.progress();
     view_.set_accel(trees.accel);

@@ -12,6 +12,7 @@
 #include "viewer/app/view.h"
 #include "viewer/app/window.h"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,8 +21,9 @@ namespace raypick {
 
 class App {
 public:
-    // `window` feeds `input`; both must outlive the app.
-    App(const ViewOptions& options, Window& window, InputState& input);
+    // `window` feeds `input`; both must outlive the app. The opener may have begun with a file.
+    App(const ViewOptions& options, Window& window, InputState& input,
+        std::unique_ptr<DocumentOpener> opener);
 
     // Until the window is closed.
     void run();
@@ -93,7 +95,7 @@ private:
     double ui_scale_;
     UiSession ui_;
     SceneView view_;
-    DocumentOpener opener_;
+    std::unique_ptr<DocumentOpener> opener_;
     DocumentTrees trees_;
     FileSaver saver_;
 

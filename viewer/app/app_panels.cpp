@@ -51,11 +51,11 @@ void App::draw_side_panel() {
 
 void App::draw_loading() {
     load_card_.reset();
-    const std::optional<OpenProgress> progress = opener_.progress();
+    const std::optional<OpenProgress> progress = opener_->progress();
     if (!progress) return;
     const LoadCard card = draw_load_card(*progress, view_region(), !document_);
     load_card_ = card.place;
-    if (card.cancelled) opener_.cancel();
+    if (card.cancelled) opener_->cancel();
 }
 
 void App::draw_dialog() {
@@ -99,7 +99,7 @@ std::string App::view_text() const {
 std::string App::title() const {
     std::string title = "raypick";
     if (document_) title += " - " + document_->file.filename().string();
-    if (const std::optional<OpenProgress> progress = opener_.progress()) {
+    if (const std::optional<OpenProgress> progress = opener_->progress()) {
         return title + " - opening " + progress->file.filename().string();
     }
     if (std::holds_alternative<MessageBox>(overlay_)) return title + " - error";

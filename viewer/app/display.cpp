@@ -63,20 +63,21 @@ bool opens_a_window() {
 }  // namespace
 
 DisplayProbe::DisplayProbe() {
-    if (!display_named()) return;
-    start();
-    if (outcome_ != Outcome::refuses) return;
-    // It may just be starting over.
-    std::this_thread::sleep_for(kBeforeSecondTry);
-    start();
+    if (display_named()) start();
 }
 
 DisplayProbe::~DisplayProbe() {
     stop();
 }
 
-void DisplayProbe::start() {
+void DisplayProbe::ask_again() {
     stop();
+    std::this_thread::sleep_for(kBeforeSecondTry);
+    start();
+}
+
+void DisplayProbe::start() {
+    outcome_ = Outcome::unknown;
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) return;
     const pid_t parent = getpid();
@@ -87,7 +88,11 @@ void DisplayProbe::start() {
     }
     close(ends[1]);
     from_child_ = ends[0];
-    if (child_ > 0) outcome_ = hear();
+}
+
+DisplayProbe::Outcome DisplayProbe::outcome() {
+    if (outcome_ == Outcome::unknown) outcome_ = asks() ? hear() : Outcome::refuses;
+    return outcome_;
 }
 
 DisplayProbe::Outcome DisplayProbe::hear() const {
@@ -108,7 +113,9 @@ void DisplayProbe::stop() {
 }
 
 bool display_answers() {
-    return DisplayProbe().answers();
+    DisplayProbe probe;
+    if (probe.refuses()) probe.ask_again();
+    return probe.answers();
 }
 
 }  // namespace raypick
