@@ -8,6 +8,7 @@
 #include "viewer/raster/gpu_lights.h"
 #include "viewer/raster/gpu_scene.h"
 #include "viewer/raster/shader_set.h"
+#include "viewer/raster/spots.h"
 #include "viewer/raster/view_numbers.h"
 
 #include <fmt/format.h>
@@ -165,8 +166,10 @@ void Rasterizer::State::shade_pixels(const GpuLights& lights, bool textured) {
 }
 
 Rasterizer::Rasterizer(Unseen unseen) : state_(std::make_unique<State>()) {
-    state_->leaves_out_unseen =
-        unseen == Unseen::left_out || (unseen == Unseen::automatic && draws_in_software());
+    GLint subpixel_bits = 0;
+    glGetIntegerv(GL_SUBPIXEL_BITS, &subpixel_bits);
+    const bool pays = draws_in_software() && subpixel_bits >= kSpotBits;
+    state_->leaves_out_unseen = unseen == Unseen::left_out || (unseen == Unseen::automatic && pays);
 }
 
 Rasterizer::~Rasterizer() = default;

@@ -19,7 +19,7 @@ namespace raypick {
 enum class TieRule { kept, dropped };
 
 // Whether the CPU looks first which triangles can be seen, and only those are drawn. The picture is
-// the same. `automatic`: where the CPU draws as well.
+// the same. `automatic`: where the CPU draws as well, on a grid as fine as that needs (kSpotBits).
 enum class Unseen { automatic, left_out, drawn };
 
 // Needs a current OpenGL 3.3 core context with its functions loaded, the same one in every call.
