@@ -37,10 +37,10 @@ struct Edge {
     float margin = 0.0f;  // this is what a move by kSpotMargin changes at most
 
     Edge(const Spot& from, const Spot& to, const Spot& origin)
-        : a(from.y - to.y), b(to.x - from.x) {
-        c = -a * (from.x - origin.x) - b * (from.y - origin.y);
-        margin = kSpotMargin * (std::abs(a) + std::abs(b));
-    }
+        : a(from.y - to.y),
+          b(to.x - from.x),
+          c(-a * (from.x - origin.x) - b * (from.y - origin.y)),
+          margin(kSpotMargin * (std::abs(a) + std::abs(b))) {}
 };
 
 // Columns of a row.

@@ -69,7 +69,7 @@ public:
 
 private:
     template <typename CountOf>
-    std::vector<Run> runs_of(const CountOf& count_of) const {
+    [[nodiscard]] std::vector<Run> runs_of(const CountOf& count_of) const {
         std::vector<Run> runs;
         for (std::size_t mesh = 0; mesh < first_spot_.size(); ++mesh) {
             const std::size_t count = count_of(meshes_[mesh]);
