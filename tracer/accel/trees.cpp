@@ -1,6 +1,6 @@
 #include "tracer/accel/trees.h"
 
-#include "tracer/bvh/float4.h"
+#include "tracer/accel/mesh_corners.h"
 #include "tracer/error.h"
 #include "tracer/geometry/rounding.h"
 #include "tracer/parallel/parallel.h"
@@ -9,8 +9,6 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <span>
 #include <utility>
 #include <variant>
@@ -18,30 +16,6 @@
 namespace raypick {
 
 namespace {
-
-// With a fourth lane that means nothing.
-Float4 position(const Mesh& mesh, std::uint32_t vertex) {
-    const glm::vec3* const at = &mesh.positions[vertex];
-    Float4 position{};
-    // All four at once, where there is something behind the three.
-    if (vertex + std::size_t{1} < mesh.positions.size()) {
-        std::memcpy(&position, at, sizeof position);
-    } else {
-        std::memcpy(&position, at, sizeof *at);
-    }
-    return position;
-}
-
-// A triangle with a NaN is never hit: its box stays empty.
-Bounds triangle_box(const Mesh& mesh, std::size_t index) {
-    const glm::uvec3 t = mesh.triangles[index];
-    const Float4 a = position(mesh, t.x);
-    const Float4 b = position(mesh, t.y);
-    const Float4 c = position(mesh, t.z);
-    const Float4 sum = a + b + c;
-    if (!std::isfinite(sum[0] + sum[1] + sum[2])) return {};
-    return Box4{min4(min4(a, b), c), max4(max4(a, b), c)}.bounds();
-}
 
 Bounds sphere_box(const SphereSet& set, std::size_t index) {
     const Sphere sphere = sphere_of(set, static_cast<std::uint32_t>(index));
@@ -75,7 +49,7 @@ BoxSource one_by_one(const BoxOf& box_of) {
 TreeSource source_of(const Mesh& mesh) {
     return {{mesh.positions.data(), mesh.triangles.data()},
             mesh.triangles.size(),
-            one_by_one([&mesh](std::size_t i) { return triangle_box(mesh, i); }),
+            one_by_one([&mesh](std::size_t i) { return triangle_box(mesh, i).bounds(); }),
             kWideSurfaceLeaves,
             &mesh};
 }

@@ -1,13 +1,14 @@
 #include "tracer/accel/triangle_patches.h"
 
+#include "tracer/accel/mesh_corners.h"
 #include "tracer/accel/same_corners.h"
 #include "tracer/error.h"
 #include "tracer/parallel/parallel.h"
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstring>
+#include <iterator>
 #include <span>
 #include <stdexcept>
 
@@ -17,98 +18,88 @@ namespace {
 
 using Blocks = LargeArray<TrianglePatches::Block>;
 
-// A patch of as many of a leaf's next triangles as fit into one.
-class PatchMaker {
-public:
-    // Of the first eight primitives at most.
-    PatchMaker(const Mesh& mesh, std::span<const std::uint32_t> primitives) {
-        const std::size_t most = std::min<std::size_t>(primitives.size(), kTriangles);
-        for (std::size_t i = 0; i < most; ++i) {
-            primitives_[i] = primitives[i] & ~WideBvh::kLast;
-            const glm::uvec3 t = mesh.triangles[primitives_[i]];
-            for (int k = 0; k < 3; ++k)
-                put_place(3 * i + static_cast<std::size_t>(k), mesh.positions[t[k]]);
+// Room for the largest patch, what is written beyond it, and zeros at its end.
+constexpr std::size_t kMostBlocks = 20;
+static_assert(kMostBlocks * sizeof(TrianglePatches::Block) >=
+              sizeof(TrianglePatch) + 8 * 4 + 3 * 16 * 4 + SharedCorners::kWrittenBeyond * 4 + 16);
+
+// As three rows of four lanes.
+void store_four(CornerPlaces& places, std::size_t first, const std::array<Float4, 4>& corners) {
+    const auto& [a, b, c, d] = corners;
+    const Float4 xy = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+    const Float4 xy_next = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+    const Float4 z = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+    const Float4 z_next = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+    const std::array<Float4, 3> axes{__builtin_shufflevector(xy, xy_next, 0, 1, 4, 5),
+                                     __builtin_shufflevector(xy, xy_next, 2, 3, 6, 7),
+                                     __builtin_shufflevector(z, z_next, 0, 1, 4, 5)};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        std::memcpy(&places.along[axis][first], &axes[axis], sizeof axes[axis]);
+}
+
+// The corners of up to eight triangles; returns the box around them.
+Box4 find_places(const Mesh& mesh, std::span<const std::uint32_t> primitives,
+                 CornerPlaces& places) {
+    std::array<std::uint32_t, CornerPlaces::kMost> vertices;
+    const std::size_t count = 3 * primitives.size();
+    for (std::size_t i = 0; i < primitives.size(); ++i)
+        std::memcpy(&vertices[3 * i], &mesh.triangles[primitives[i]], 3 * sizeof vertices[0]);
+    std::fill_n(vertices.begin() + static_cast<std::ptrdiff_t>(count), (0u - count) % 4,
+                vertices[0]);
+    Box4 box;
+    for (std::size_t i = 0; i < count; i += 4) {
+        std::array<Float4, 4> corners;
+        for (std::size_t k = 0; k < 4; ++k) {
+            corners[k] = position4(mesh, vertices[i + k]);
+            box.extend(corners[k]);
         }
-        find_first_corners(places_, 3 * most, first_);
-        while (patch_.triangles < most && add_triangle(patch_.triangles)) {
-        }
+        store_four(places, i, corners);
     }
+    return box;
+}
 
-    [[nodiscard]] std::uint32_t triangles() const { return patch_.triangles; }
-    void finish_leaf() { patch_.last = 1; }
+// Appends a patch of as many triangles as fit into one, and returns it, which is to be the last of
+// its leaf if it takes all.
+TrianglePatch append_patch(const CornerPlaces& places, std::span<const std::uint32_t> primitives,
+                           bool leaf_ends, Blocks& blocks) {
+    const std::size_t first = blocks.size();
+    blocks.resize(first + kMostBlocks);
+    auto* const at = reinterpret_cast<std::byte*>(blocks.data() + first);
+    auto* const numbers = reinterpret_cast<std::uint32_t*>(at + sizeof(TrianglePatch));
+    std::copy(primitives.begin(), primitives.end(), numbers);
+    const SharedCorners shared = share_corners(places, primitives.size(), numbers);
+    TrianglePatch patch;
+    patch.triangles = static_cast<std::uint8_t>(shared.triangles);
+    patch.corners = static_cast<std::uint8_t>(shared.count);
+    patch.last = leaf_ends && shared.triangles == primitives.size() ? 1 : 0;
+    std::copy(shared.number.begin(), shared.number.end(), std::begin(patch.corner));
+    std::memcpy(at, &patch, sizeof patch);
+    std::memset(numbers + patch.triangles + 3u * patch.corners, 0, sizeof(TrianglePatches::Block));
+    blocks.resize(first + patch.size());
+    return patch;
+}
 
-    // Copies as much as there may be, as it takes less time than to copy what there is. What lies
-    // behind that is overwritten.
-    void append_to(Blocks& blocks) const {
-        constexpr std::size_t kMostBlocks = 16;
-        const std::size_t first = blocks.size();
-        blocks.resize(first + kMostBlocks);
-        auto* at = reinterpret_cast<std::byte*>(blocks.data() + first);
-        std::memcpy(at, &patch_, sizeof patch_);
-        at += sizeof patch_;
-        std::memcpy(at, primitives_.data(), sizeof primitives_);
-        at += patch_.triangles * sizeof(std::uint32_t);
-        for (const Coordinates& along : coordinates_) {
-            std::memcpy(at, along.data(), TrianglePatch::kMostCorners * sizeof(float));
-            at += patch_.corners * sizeof(float);
-        }
-        std::memset(at, 0, sizeof(TrianglePatches::Block));
-        blocks.resize(first + patch_.size());
+// Appends a leaf's patches; returns the box around its triangles.
+Box4 append_patches(std::span<const std::uint32_t> leaf, const Mesh& mesh, Blocks& blocks) {
+    Box4 box;
+    std::array<std::uint32_t, TrianglePatch::kMostTriangles> some;
+    while (!leaf.empty()) {
+        const std::span primitives = std::span(some).first(std::min(leaf.size(), some.size()));
+        for (std::size_t i = 0; i < primitives.size(); ++i)
+            primitives[i] = leaf[i] & ~WideBvh::kLast;
+        CornerPlaces places;
+        box.extend(find_places(mesh, primitives, places));
+        const bool ends = leaf.size() == primitives.size();
+        leaf = leaf.subspan(append_patch(places, primitives, ends, blocks).triangles);
     }
-
-private:
-    static constexpr std::size_t kTriangles = TrianglePatch::kMostTriangles;
-    // With room for a last triangle that doesn't fit.
-    using Coordinates = std::array<std::uint32_t, TrianglePatch::kMostCorners + 3>;  // as bits
-
-    void put_place(std::size_t i, const glm::vec3& position) {
-        const auto at = std::bit_cast<std::array<std::uint32_t, 3>>(position);
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            places_.along[axis][i] = at[axis];
-    }
-
-    // False if there is no room for its corners.
-    bool add_triangle(std::uint32_t triangle) {
-        std::uint32_t corners = patch_.corners;
-        std::array<std::uint32_t, 3> numbers{};
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t i = 3 * std::size_t{triangle} + k;
-            numbers[k] = first_[i] == i ? corners : numbers_[first_[i]];
-            corners += first_[i] == i ? 1u : 0u;
-            numbers_[i] = numbers[k];
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                coordinates_[axis][numbers[k]] = places_.along[axis][i];
-        }
-        if (corners > TrianglePatch::kMostCorners) return false;
-        for (std::size_t k = 0; k < 3; ++k)
-            patch_.corner[k] |= numbers[k] << (4 * triangle);
-        patch_.corners = static_cast<std::uint8_t>(corners);
-        ++patch_.triangles;
-        return true;
-    }
-
-    TrianglePatch patch_;
-    std::array<std::uint32_t, kTriangles> primitives_;
-    CornerPlaces places_;
-    FirstCorners first_;
-    std::array<std::uint32_t, CornerPlaces::kMost> numbers_;  // of the corners, in the patch
-    std::array<Coordinates, 3> coordinates_;
-};
+    return box;
+}
 
 // A leaf, and where it stands in the tree.
 struct Leaf {
     std::uint32_t* place = nullptr;
     std::span<const std::uint32_t> primitives;
 };
-
-void append_patches(std::span<const std::uint32_t> primitives, const Mesh& mesh, Blocks& blocks) {
-    while (!primitives.empty()) {
-        PatchMaker patch(mesh, primitives);
-        primitives = primitives.subspan(patch.triangles());
-        if (primitives.empty()) patch.finish_leaf();
-        patch.append_to(blocks);
-    }
-}
 
 // Reads along the leaves' order jump about in the mesh, so the processor is told what comes.
 void fetch_triangles(const Leaf& leaf, const Mesh& mesh) {

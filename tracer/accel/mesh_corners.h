@@ -1,0 +1,40 @@
+// A mesh's triangles as builders of trees read them.
+#pragma once
+
+#include "tracer/bvh/float4.h"
+#include "tracer/scene/scene.h"
+
+#include <glm/vec3.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace raypick {
+
+// With a fourth lane that means nothing.
+inline Float4 position4(const Mesh& mesh, std::uint32_t vertex) {
+    const glm::vec3* const at = &mesh.positions[vertex];
+    Float4 position{};
+    // All four at once, where there is something behind the three.
+    if (vertex + std::size_t{1} < mesh.positions.size()) {
+        std::memcpy(&position, at, sizeof position);
+    } else {
+        std::memcpy(&position, at, sizeof *at);
+    }
+    return position;
+}
+
+// A triangle with a NaN is never hit: its box is empty.
+inline Box4 triangle_box(const Mesh& mesh, std::size_t index) {
+    const glm::uvec3 t = mesh.triangles[index];
+    const Float4 a = position4(mesh, t.x);
+    const Float4 b = position4(mesh, t.y);
+    const Float4 c = position4(mesh, t.z);
+    const Float4 sum = a + b + c;
+    if (!std::isfinite(sum[0] + sum[1] + sum[2])) return {};
+    return {min4(min4(a, b), c), max4(max4(a, b), c)};
+}
+
+}  // namespace raypick
