@@ -16,13 +16,9 @@ namespace raypick {
 // With a fourth lane that means nothing.
 inline Float4 position4(const Mesh& mesh, std::uint32_t vertex) {
     const glm::vec3* const at = &mesh.positions[vertex];
-    Float4 position{};
-    // All four at once, where there is something behind the three.
-    if (vertex + std::size_t{1} < mesh.positions.size()) {
-        std::memcpy(&position, at, sizeof position);
-    } else {
-        std::memcpy(&position, at, sizeof *at);
-    }
+    if (vertex + std::size_t{1} == mesh.positions.size()) return Float4{at->x, at->y, at->z, 0.0f};
+    Float4 position;  // all four at once, as there is something behind the three
+    std::memcpy(&position, at, sizeof position);
     return position;
 }
 

@@ -25,49 +25,56 @@ HWY_INLINE std::uint32_t bits_of_mask(Mask mask) {
     return bits;
 }
 
-// Of the corners up to i, and perhaps of some more. All are compared at once: which of them it is
-// can't be foretold, so that a loop that ends there would be costly.
-HWY_INLINE std::uint32_t corners_at_place_of(std::size_t i, const CornerPlaces& places) {
+// For each corner, a bit for each one that is at its place, those behind it not all. All are
+// compared at once: which of them it is can't be foretold, so that a loop that ends there would be
+// costly.
+using SameCorners = std::array<std::uint32_t, CornerPlaces::kMost>;
+
+HWY_INLINE void find_same(const CornerPlaces& places, std::size_t count, SameCorners& same) {
     const Tag d;
     const auto& [x, y, z] = places.along;
-    const auto at_x = hn::Set(d, x[i]);
-    const auto at_y = hn::Set(d, y[i]);
-    const auto at_z = hn::Set(d, z[i]);
-    std::uint32_t same = 0;
-    for (std::size_t v = 0; v <= i; v += hn::Lanes(d)) {
-        const auto equal =
-            hn::And(hn::Eq(at_x, hn::Load(d, &x[v])),
-                    hn::And(hn::Eq(at_y, hn::Load(d, &y[v])), hn::Eq(at_z, hn::Load(d, &z[v]))));
-        same |= bits_of_mask(equal) << v;
+    for (std::size_t v = 0; v < count; v += hn::Lanes(d)) {
+        const auto others_x = hn::Load(d, &x[v]);
+        const auto others_y = hn::Load(d, &y[v]);
+        const auto others_z = hn::Load(d, &z[v]);
+        for (std::size_t i = v; i < count; ++i) {
+            const auto equal = hn::And(
+                hn::Eq(hn::Set(d, x[i]), others_x),
+                hn::And(hn::Eq(hn::Set(d, y[i]), others_y), hn::Eq(hn::Set(d, z[i]), others_z)));
+            const std::uint32_t bits = bits_of_mask(equal) << v;
+            same[i] = v == 0 ? bits : same[i] | bits;
+        }
     }
-    return same;
 }
 
-HWY_INLINE SharedCorners number_corners(const CornerPlaces& places, std::size_t triangles) {
-    SharedCorners shared;
+// The numbers of all corners, and the corners that are the first at their place, as bits.
+struct Numbers {
+    std::array<std::uint32_t, 3> corner{};  // as in a patch
+    std::uint32_t firsts = 0;
+};
+
+HWY_INLINE Numbers number_corners(const SameCorners& same, std::size_t triangles) {
+    Numbers numbers;
     for (std::size_t i = 0; i < triangles; ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t corner = 3 * i + k;
-            const std::uint32_t same = corners_at_place_of(corner, places);
-            const std::uint32_t first = same & (0u - same);
+            const std::uint32_t first = same[corner] & (0u - same[corner]);
             const auto number =
-                static_cast<std::uint32_t>(std::popcount(shared.firsts & (first - 1u)));
-            shared.firsts |= first & 1u << corner;
-            shared.number[k] |= (number & 15u) << (4 * i);
+                static_cast<std::uint32_t>(std::popcount(numbers.firsts & (first - 1u)));
+            numbers.firsts |= first & 1u << corner;
+            numbers.corner[k] |= (number & 15u) << (4 * i);
         }
     }
-    shared.triangles = static_cast<std::uint32_t>(triangles);
-    shared.count = static_cast<std::uint32_t>(std::popcount(shared.firsts));
-    return shared;
+    return numbers;
 }
 
-// Takes the last triangle away.
-HWY_INLINE void drop_triangle(SharedCorners& shared) {
-    --shared.triangles;
-    shared.firsts &= (1u << (3 * shared.triangles)) - 1u;
-    for (std::uint32_t& number : shared.number)
-        number &= (1u << (4 * shared.triangles)) - 1u;
-    shared.count = static_cast<std::uint32_t>(std::popcount(shared.firsts));
+// How many of the triangles have no more corners than a patch has place for.
+HWY_INLINE std::uint32_t triangles_that_fit(const Numbers& numbers, std::size_t triangles) {
+    auto fit = static_cast<std::uint32_t>(triangles);
+    std::uint32_t firsts = numbers.firsts;
+    while (static_cast<std::uint32_t>(std::popcount(firsts)) > TrianglePatch::kMostCorners)
+        firsts &= (1u << (3 * --fit)) - 1u;
+    return fit;
 }
 
 HWY_INLINE void write_along(const std::array<std::uint32_t, 32>& along, std::uint32_t firsts,
@@ -82,17 +89,22 @@ HWY_INLINE void write_along(const std::array<std::uint32_t, 32>& along, std::uin
     }
 }
 
-SharedCorners share_corners(const CornerPlaces& places, std::size_t triangles, std::uint32_t* out) {
-    constexpr std::uint32_t kMostCorners = 16;
-    SharedCorners shared = number_corners(places, triangles);
-    while (shared.count > kMostCorners)
-        drop_triangle(shared);
-    out += shared.triangles;
+SharedCorners share_corners(const CornerPlaces& places, std::size_t triangles,
+                            TrianglePatch& patch) {
+    SameCorners same;
+    find_same(places, 3 * triangles, same);
+    const Numbers numbers = number_corners(same, triangles);
+    const std::uint32_t fit = triangles_that_fit(numbers, triangles);
+    const std::uint32_t firsts = numbers.firsts & ((1u << (3 * fit)) - 1u);
+    const auto corners = static_cast<std::uint32_t>(std::popcount(firsts));
+    for (std::size_t k = 0; k < 3; ++k)
+        patch.corner[k] = numbers.corner[k] & static_cast<std::uint32_t>((1ull << (4 * fit)) - 1u);
+    auto* out = reinterpret_cast<std::uint32_t*>(&patch + 1) + fit;
     for (const auto& along : places.along) {
-        write_along(along, shared.firsts, out);
-        out += shared.count;
+        write_along(along, firsts, out);
+        out += corners;
     }
-    return shared;
+    return {fit, corners};
 }
 
 }  // namespace raypick::HWY_NAMESPACE
@@ -103,8 +115,9 @@ namespace raypick {
 
 HWY_EXPORT(share_corners);
 
-SharedCorners share_corners(const CornerPlaces& places, std::size_t triangles, std::uint32_t* out) {
-    return HWY_DYNAMIC_DISPATCH(share_corners)(places, triangles, out);
+SharedCorners share_corners(const CornerPlaces& places, std::size_t triangles,
+                            TrianglePatch& patch) {
+    return HWY_DYNAMIC_DISPATCH(share_corners)(places, triangles, patch);
 }
 
 }  // namespace raypick

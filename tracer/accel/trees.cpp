@@ -1,6 +1,7 @@
 #include "tracer/accel/trees.h"
 
 #include "tracer/accel/mesh_corners.h"
+#include "tracer/bvh/bvh_fast.h"
 #include "tracer/error.h"
 #include "tracer/geometry/rounding.h"
 #include "tracer/parallel/parallel.h"
@@ -77,6 +78,54 @@ std::shared_ptr<const PrimitiveTree> find_tree(const TreeList& known, const Tree
     return found != known.end() ? *found : nullptr;
 }
 
+// Around the positions, those apart that are not finite.
+Box4 box_around(std::span<const glm::vec3> positions, int threads, const std::stop_token& stop) {
+    constexpr std::size_t kChunk = 1u << 15;
+    std::vector<Box4> boxes((positions.size() + kChunk - 1) / kChunk);
+    parallel_for(boxes.size(), threads, stop, [&](std::size_t i) {
+        const std::size_t end = std::min(positions.size(), (i + 1) * kChunk);
+        Box4 box;
+        for (std::size_t k = i * kChunk; k < end; ++k) {
+            const glm::vec3 p = positions[k];
+            const Float4 at{p.x, p.y, p.z, 0.0f};
+            const Float4 known = at + 0.0f * at;  // NaN where it is not finite
+            box.min = min4(known, box.min);
+            box.max = max4(known, box.max);
+        }
+        boxes[i] = box;
+    });
+    Box4 box;
+    for (const Box4& some : boxes)
+        box.extend(some);
+    return box;
+}
+
+void build_quality_tree(PrimitiveTree& tree, const TreeSource& source, const BvhOptions& how) {
+    tree.bvh = widen(build_bvh(source.count, source.boxes, how), how.threads, how.stop);
+    if (source.mesh != nullptr) {
+        tree.patches = take_triangles(tree.bvh, *source.mesh, how.threads, how.stop);
+    }
+}
+
+void build_first_tree(PrimitiveTree& tree, const TreeSource& source, const BvhOptions& how) {
+    if (source.mesh == nullptr) {
+        tree.bvh = build_bvh_fast(source.count, source.boxes, how);
+        return;
+    }
+    const Mesh& mesh = *source.mesh;
+    // Not where the mesh is likely to use only some of its positions.
+    const bool dense = mesh.positions.size() <= 4 * source.count;
+    const Box4 around = dense ? box_around(mesh.positions, how.threads, how.stop) : Box4{};
+    const Box4Source boxes = [&mesh](std::size_t first, std::span<Box4> wanted) {
+        for (std::size_t i = 0; i < wanted.size(); ++i)
+            wanted[i] = triangle_box(mesh, first + i);
+    };
+    LargeArray<MortonKey> keys = morton_order(source.count, boxes, around, how);
+    PatchStore store(mesh, keys.size());
+    tree.bvh = build_over_keys(std::move(keys), store.leaves(), how);
+    tree.patches = store.take();
+}
+
 std::shared_ptr<const PrimitiveTree> build_tree(const TreeSource& source,
                                                 const BuildOptions& options, int threads) {
     PrimitiveTree tree;
@@ -84,12 +133,10 @@ std::shared_ptr<const PrimitiveTree> build_tree(const TreeSource& source,
     tree.count = source.count;
     tree.quality = options.quality;
     const BvhOptions how{.costs = source.costs, .threads = threads, .stop = options.stop};
-    tree.bvh = widen(options.quality == TreeQuality::first
-                         ? build_bvh_fast(source.count, source.boxes, how)
-                         : build_bvh(source.count, source.boxes, how),
-                     threads, options.stop);
-    if (source.mesh != nullptr) {
-        tree.patches = take_triangles(tree.bvh, *source.mesh, threads, options.stop);
+    if (options.quality == TreeQuality::first) {
+        build_first_tree(tree, source, how);
+    } else {
+        build_quality_tree(tree, source, how);
     }
     const Bounds& box = tree.bvh.bounds;
     const glm::vec3 farthest = glm::max(glm::abs(box.min), glm::abs(box.max));

@@ -21,7 +21,7 @@ using Blocks = LargeArray<TrianglePatches::Block>;
 // Room for the largest patch, what is written beyond it, and zeros at its end.
 constexpr std::size_t kMostBlocks = 20;
 static_assert(kMostBlocks * sizeof(TrianglePatches::Block) >=
-              sizeof(TrianglePatch) + 8 * 4 + 3 * 16 * 4 + SharedCorners::kWrittenBeyond * 4 + 16);
+              sizeof(TrianglePatch) + (8 + 3 * 16 + kWrittenBeyondPatch) * sizeof(float) + 16);
 
 // As three rows of four lanes.
 void store_four(CornerPlaces& places, std::size_t first, const std::array<Float4, 4>& corners) {
@@ -58,25 +58,23 @@ Box4 find_places(const Mesh& mesh, std::span<const std::uint32_t> primitives,
     return box;
 }
 
-// Appends a patch of as many triangles as fit into one, and returns it, which is to be the last of
-// its leaf if it takes all.
-TrianglePatch append_patch(const CornerPlaces& places, std::span<const std::uint32_t> primitives,
-                           bool leaf_ends, Blocks& blocks) {
+// Appends a patch of as many triangles as fit into one, and returns how many these are. It is the
+// last of its leaf if it takes all, and the leaf ends with them.
+std::size_t append_patch(const CornerPlaces& places, std::span<const std::uint32_t> primitives,
+                         bool leaf_ends, Blocks& blocks) {
     const std::size_t first = blocks.size();
     blocks.resize(first + kMostBlocks);
-    auto* const at = reinterpret_cast<std::byte*>(blocks.data() + first);
-    auto* const numbers = reinterpret_cast<std::uint32_t*>(at + sizeof(TrianglePatch));
+    auto& patch = *reinterpret_cast<TrianglePatch*>(blocks.data() + first);
+    auto* const numbers = reinterpret_cast<std::uint32_t*>(&patch + 1);
     std::copy(primitives.begin(), primitives.end(), numbers);
-    const SharedCorners shared = share_corners(places, primitives.size(), numbers);
-    TrianglePatch patch;
+    const SharedCorners shared = share_corners(places, primitives.size(), patch);
     patch.triangles = static_cast<std::uint8_t>(shared.triangles);
-    patch.corners = static_cast<std::uint8_t>(shared.count);
+    patch.corners = static_cast<std::uint8_t>(shared.corners);
     patch.last = leaf_ends && shared.triangles == primitives.size() ? 1 : 0;
-    std::copy(shared.number.begin(), shared.number.end(), std::begin(patch.corner));
-    std::memcpy(at, &patch, sizeof patch);
-    std::memset(numbers + patch.triangles + 3u * patch.corners, 0, sizeof(TrianglePatches::Block));
-    blocks.resize(first + patch.size());
-    return patch;
+    std::memset(numbers + shared.triangles + std::size_t{3} * shared.corners, 0,
+                sizeof(TrianglePatches::Block));
+    blocks.resize(first + TrianglePatch::size(shared.triangles, shared.corners));
+    return shared.triangles;
 }
 
 // Appends a leaf's patches; returns the box around its triangles.
@@ -90,9 +88,39 @@ Box4 append_patches(std::span<const std::uint32_t> leaf, const Mesh& mesh, Block
         CornerPlaces places;
         box.extend(find_places(mesh, primitives, places));
         const bool ends = leaf.size() == primitives.size();
-        leaf = leaf.subspan(append_patch(places, primitives, ends, blocks).triangles);
+        leaf = leaf.subspan(append_patch(places, primitives, ends, blocks));
     }
     return box;
+}
+
+// Reads along the leaves' order jump about in the mesh, so the processor is told what comes.
+void fetch_triangles(std::span<const std::uint32_t> leaf, const Mesh& mesh) {
+    for (const std::uint32_t primitive : leaf)
+        __builtin_prefetch(&mesh.triangles[primitive & ~WideBvh::kLast]);
+}
+void fetch_corners(std::span<const std::uint32_t> leaf, const Mesh& mesh) {
+    for (const std::uint32_t primitive : leaf) {
+        const glm::uvec3 t = mesh.triangles[primitive & ~WideBvh::kLast];
+        for (int k = 0; k < 3; ++k)
+            __builtin_prefetch(&mesh.positions[t[k]]);
+    }
+}
+
+// Appends the patches of so many leaves, whose primitives are primitives_of(i), and calls
+// done(i, first block, box).
+template <typename PrimitivesOf, typename Done>
+void append_leaves(std::size_t count, const PrimitivesOf& primitives_of, const Mesh& mesh,
+                   Blocks& blocks, const Done& done) {
+    constexpr std::size_t kAhead = 4;  // leaves
+    for (std::size_t i = 0; i < count + 2 * kAhead; ++i) {
+        if (i < count) fetch_triangles(primitives_of(i), mesh);
+        const std::size_t next = i - kAhead;
+        if (next < count) fetch_corners(primitives_of(next), mesh);
+        const std::size_t now = next - kAhead;
+        if (now >= count) continue;
+        const auto first = static_cast<std::uint32_t>(blocks.size());
+        done(now, first, append_patches(primitives_of(now), mesh, blocks));
+    }
 }
 
 // A leaf, and where it stands in the tree.
@@ -100,19 +128,6 @@ struct Leaf {
     std::uint32_t* place = nullptr;
     std::span<const std::uint32_t> primitives;
 };
-
-// Reads along the leaves' order jump about in the mesh, so the processor is told what comes.
-void fetch_triangles(const Leaf& leaf, const Mesh& mesh) {
-    for (const std::uint32_t primitive : leaf.primitives)
-        __builtin_prefetch(&mesh.triangles[primitive & ~WideBvh::kLast]);
-}
-void fetch_corners(const Leaf& leaf, const Mesh& mesh) {
-    for (const std::uint32_t primitive : leaf.primitives) {
-        const glm::uvec3 t = mesh.triangles[primitive & ~WideBvh::kLast];
-        for (int k = 0; k < 3; ++k)
-            __builtin_prefetch(&mesh.positions[t[k]]);
-    }
-}
 
 // Some places in a tree, and the patches of the leaves among them.
 struct Portion {
@@ -124,7 +139,6 @@ struct Portion {
 
     // A leaf's index counts from the portion's first block then.
     void collect_leaves() {
-        constexpr std::size_t kAhead = 4;  // leaves
         std::vector<Leaf> leaves;
         leaves.reserve(kWidth * (end - begin));
         std::size_t triangles = 0;
@@ -132,16 +146,12 @@ struct Portion {
             leaves.push_back({&place, indices_of(bvh, {place})});
             triangles += leaves.back().primitives.size();
         });
-        blocks.reserve(2 * triangles);  // enough for surfaces
-        for (std::size_t i = 0; i < leaves.size() + 2 * kAhead; ++i) {
-            if (i < leaves.size()) fetch_triangles(leaves[i], mesh);
-            const std::size_t next = i - kAhead;
-            if (next < leaves.size()) fetch_corners(leaves[next], mesh);
-            const std::size_t now = next - kAhead;
-            if (now >= leaves.size()) continue;
-            *leaves[now].place = WideRef::leaf(static_cast<std::uint32_t>(blocks.size())).bits;
-            append_patches(leaves[now].primitives, mesh, blocks);
-        }
+        blocks.reserve(2 * triangles + kMostBlocks);  // enough for surfaces
+        append_leaves(
+            leaves.size(), [&](std::size_t i) { return leaves[i].primitives; }, mesh, blocks,
+            [&](std::size_t i, std::uint32_t first, const Box4& /*box*/) {
+                *leaves[i].place = WideRef::leaf(first).bits;
+            });
         blocks.shrink_to_fit();
     }
 
@@ -198,6 +208,47 @@ TrianglePatches take_triangles(WideBvh& bvh, const Mesh& mesh, int threads,
                  [&](std::size_t i) { portions[i].move_to(patches, first[i]); });
     if (stop.stop_requested()) throw Cancelled();
     return patches;
+}
+
+PatchStore::PatchStore(const Mesh& mesh, std::size_t keys)
+    : mesh_(mesh), chunks_((keys + kKeysInChunk - 1) / kKeysInChunk) {
+    patches_.blocks.reserve(keys * 7 / 4 + kMostBlocks);  // enough for surfaces
+}
+
+LeafStore PatchStore::leaves() {
+    return {[this](std::size_t chunk, std::span<const MortonKey> keys,
+                   std::span<TreeletLeaf> leaves) { return store(chunk, keys, leaves); },
+            [this](std::size_t chunk) { append(chunk); }};
+}
+
+std::size_t PatchStore::store(std::size_t chunk, std::span<const MortonKey> keys,
+                              std::span<TreeletLeaf> leaves) {
+    std::array<std::uint32_t, kKeysInChunk> primitives;
+    for (std::size_t i = 0; i < keys.size(); ++i)
+        primitives[i] = keys[i].index;
+    Blocks& blocks = chunks_[chunk];
+    blocks.reserve(2 * keys.size() + kMostBlocks);  // enough for surfaces
+    append_leaves(
+        leaves.size(),
+        [&](std::size_t i) {
+            return std::span<const std::uint32_t>(&primitives[leaves[i].first], leaves[i].count);
+        },
+        mesh_, blocks,
+        [&](std::size_t i, std::uint32_t first, const Box4& box) {
+            leaves[i].first = first;
+            leaves[i].box = box;
+        });
+    return blocks.size();
+}
+
+void PatchStore::append(std::size_t chunk) {
+    patches_.blocks.insert(patches_.blocks.end(), chunks_[chunk].begin(), chunks_[chunk].end());
+    chunks_[chunk] = {};
+}
+
+TrianglePatches PatchStore::take() {
+    make_room(patches_, patches_.blocks.size());
+    return std::move(patches_);
 }
 
 }  // namespace raypick
