@@ -144,21 +144,38 @@ std::shared_ptr<const PrimitiveTree> build_tree(const TreeSource& source,
     return std::make_shared<const PrimitiveTree>(std::move(tree));
 }
 
-// Small trees side by side, each on one thread; then large ones, each on all.
+// From so many primitives on a tree is built on all threads: from a share of all primitives that
+// would keep one thread busy after the others are done.
+std::size_t least_for_all_threads(std::span<const TreeSource> sources, int threads) {
+    constexpr std::size_t kLeast = 1u << 13;
+    std::size_t sum = 0;
+    for (const TreeSource& source : sources)
+        sum += source.count;
+    const int workers = threads > 0 ? threads : hardware_threads();
+    return std::max(kLeast, sum / (4u * static_cast<std::size_t>(workers)));
+}
+
+// Large trees one after the other, each on all threads; then the others side by side, each on one,
+// the largest first, so that no thread begins with one when the others are done.
 void build_missing(TreeList& trees, std::span<const TreeSource> sources,
                    const BuildOptions& options) {
-    constexpr std::size_t kSmall = 1u << 14;
+    const std::size_t large = least_for_all_threads(sources, options.threads);
     std::vector<std::size_t> small;
     for (std::size_t i = 0; i < sources.size(); ++i) {
-        if (trees[i] == nullptr && sources[i].count <= kSmall) small.push_back(i);
+        if (trees[i] != nullptr) continue;
+        if (sources[i].count >= large) {
+            trees[i] = build_tree(sources[i], options, options.threads);
+        } else {
+            small.push_back(i);
+        }
     }
+    std::stable_sort(small.begin(), small.end(), [&](std::size_t a, std::size_t b) {
+        return sources[a].count > sources[b].count;
+    });
     parallel_for(small.size(), options.threads, options.stop, [&](std::size_t i) {
         trees[small[i]] = build_tree(sources[small[i]], options, 1);
     });
     if (options.stop.stop_requested()) throw Cancelled();
-    for (std::size_t i = 0; i < sources.size(); ++i) {
-        if (trees[i] == nullptr) trees[i] = build_tree(sources[i], options, options.threads);
-    }
 }
 
 // One tree for each mesh or set of `things`.
