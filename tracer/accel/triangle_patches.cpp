@@ -158,7 +158,7 @@ struct Portion {
     void move_to(TrianglePatches& patches, std::size_t block) {
         std::copy(blocks.begin(), blocks.end(),
                   patches.blocks.begin() + static_cast<std::ptrdiff_t>(block));
-        blocks = {};
+        free_array(blocks);
         each_leaf([&](std::uint32_t& place) { place += static_cast<std::uint32_t>(block); });
     }
 
@@ -200,7 +200,7 @@ TrianglePatches take_triangles(WideBvh& bvh, const Mesh& mesh, int threads,
     parallel_for(portions.size(), threads, stop,
                  [&](std::size_t i) { portions[i].collect_leaves(); });
     if (stop.stop_requested()) throw Cancelled();
-    bvh.indices = {};
+    free_array(bvh.indices);
     for (std::size_t i = 0; i < portions.size(); ++i)
         first[i + 1] = first[i] + portions[i].blocks.size();
     make_room(patches, first.back());
@@ -243,7 +243,7 @@ std::size_t PatchStore::store(std::size_t chunk, std::span<const MortonKey> keys
 
 void PatchStore::append(std::size_t chunk) {
     patches_.blocks.insert(patches_.blocks.end(), chunks_[chunk].begin(), chunks_[chunk].end());
-    chunks_[chunk] = {};
+    free_array(chunks_[chunk]);
 }
 
 TrianglePatches PatchStore::take() {

@@ -246,7 +246,7 @@ WideBvh build_over_keys(LargeArray<MortonKey> keys, const LeafStore& store,
                         const BvhOptions& options) {
     Planter planter(keys, store, options);
     planter.plant();
-    keys = {};
+    free_array(keys);
     return planter.join();
 }
 

@@ -122,7 +122,7 @@ private:
             node = subtree.nodes[i];
             move_children(node, subtree.begin - 1, 0);
         }
-        subtree.nodes = {};
+        free_array(subtree.nodes);
     }
 
     std::span<const BvhNode> nodes_;
