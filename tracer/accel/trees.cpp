@@ -1,6 +1,7 @@
 #include "tracer/accel/trees.h"
 
 #include "tracer/accel/triangle_box.h"
+#include "tracer/bvh/bvh_fast.h"
 #include "tracer/error.h"
 #include "tracer/geometry/rounding.h"
 #include "tracer/parallel/parallel.h"
@@ -9,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <span>
 #include <utility>
 #include <variant>
@@ -87,18 +89,66 @@ std::shared_ptr<const PrimitiveTree> find_tree(const TreeList& known, const Tree
     return found != known.end() ? *found : nullptr;
 }
 
+// Around the positions, those apart that are not finite.
+Box4 box_around(std::span<const glm::vec3> positions, int threads, const std::stop_token& stop) {
+    constexpr std::size_t kChunk = 1u << 15;
+    std::vector<Box4> boxes((positions.size() + kChunk - 1) / kChunk);
+    parallel_for(boxes.size(), threads, stop, [&](std::size_t i) {
+        const std::size_t end = std::min(positions.size(), (i + 1) * kChunk);
+        Box4 box;
+        for (std::size_t k = i * kChunk; k < end; ++k) {
+            const glm::vec3 p = positions[k];
+            const Float4 at{p.x, p.y, p.z, 0.0f};
+            const Float4 known = at + 0.0f * at;  // NaN where it is not finite
+            box.min = min4(known, box.min);
+            box.max = max4(known, box.max);
+        }
+        boxes[i] = box;
+    });
+    Box4 box;
+    for (const Box4& some : boxes)
+        box.extend(some);
+    return box;
+}
+
+void build_quality_tree(PrimitiveTree& tree, const TreeSource& source, const BvhOptions& how) {
+    tree.bvh = widen(build_bvh(source.count, source.boxes, how), how.threads, how.stop);
+    if (source.meshes != nullptr) {
+        tree.patches = take_triangles(tree.bvh, *source.meshes, how.threads, how.stop);
+    }
+}
+
+// Of one mesh or set: first trees are not of joined meshes.
+void build_first_tree(PrimitiveTree& tree, const TreeSource& source, const BvhOptions& how) {
+    if (source.meshes == nullptr) {
+        tree.bvh = build_bvh_fast(source.count, source.boxes, how);
+        return;
+    }
+    assert(source.meshes->size() == 1);
+    const Mesh& mesh = source.meshes->mesh(0);
+    // Not where the mesh is likely to use only some of its positions.
+    const bool dense = mesh.positions.size() <= 4 * source.count;
+    const Box4 around = dense ? box_around(mesh.positions, how.threads, how.stop) : Box4{};
+    const Box4Source boxes = [&mesh](std::size_t first, std::span<Box4> wanted) {
+        for (std::size_t i = 0; i < wanted.size(); ++i)
+            wanted[i] = triangle_box4(mesh, first + i);
+    };
+    LargeArray<MortonKey> keys = morton_order(source.count, boxes, around, how);
+    PatchStore store(*source.meshes, keys.size());
+    tree.bvh = build_over_keys(std::move(keys), store.leaves(), how);
+    tree.patches = store.take();
+}
+
 PrimitiveTree build_tree(const TreeSource& source, const BuildOptions& options, int threads) {
     PrimitiveTree tree;
     tree.arrays = source.arrays;
     tree.count = source.count;
     tree.quality = options.quality;
     const BvhOptions how{.costs = source.costs, .threads = threads, .stop = options.stop};
-    tree.bvh = widen(options.quality == TreeQuality::first
-                         ? build_bvh_fast(source.count, source.boxes, how)
-                         : build_bvh(source.count, source.boxes, how),
-                     threads, options.stop);
-    if (source.meshes != nullptr) {
-        tree.patches = take_triangles(tree.bvh, *source.meshes, threads, options.stop);
+    if (options.quality == TreeQuality::first) {
+        build_first_tree(tree, source, how);
+    } else {
+        build_quality_tree(tree, source, how);
     }
     const Bounds& box = tree.bvh.bounds;
     const glm::vec3 farthest = glm::max(glm::abs(box.min), glm::abs(box.max));
@@ -106,24 +156,41 @@ PrimitiveTree build_tree(const TreeSource& source, const BuildOptions& options, 
     return tree;
 }
 
-// Those that `trees` lacks: small ones side by side, each on one thread; then large ones, each on
-// all.
+// From so many primitives on a tree is built on all threads: from a share of all primitives that
+// would keep one thread busy after the others are done.
+std::size_t least_for_all_threads(std::span<const TreeSource> sources, int threads) {
+    constexpr std::size_t kLeast = 1u << 13;
+    std::size_t sum = 0;
+    for (const TreeSource& source : sources)
+        sum += source.count;
+    const int workers = threads > 0 ? threads : hardware_threads();
+    return std::max(kLeast, sum / (4u * static_cast<std::size_t>(workers)));
+}
+
+// Those that `trees` lacks: large ones one after the other, each on all threads; then the others
+// side by side, each on one, the largest first, so that no thread begins with one when the others
+// are done.
 void build_missing(TreeList& trees, std::span<const TreeSource> sources,
                    const BuildOptions& options) {
-    constexpr std::size_t kSmall = 1u << 14;
+    const std::size_t large = least_for_all_threads(sources, options.threads);
     const auto build = [&](std::size_t i, int threads) {
         trees[i] = std::make_shared<const PrimitiveTree>(build_tree(sources[i], options, threads));
     };
     std::vector<std::size_t> small;
-    std::vector<std::size_t> large;
     for (std::size_t i = 0; i < sources.size(); ++i) {
-        if (trees[i] == nullptr) (sources[i].count <= kSmall ? small : large).push_back(i);
+        if (trees[i] != nullptr) continue;
+        if (sources[i].count >= large) {
+            build(i, options.threads);
+        } else {
+            small.push_back(i);
+        }
     }
+    std::stable_sort(small.begin(), small.end(), [&](std::size_t a, std::size_t b) {
+        return sources[a].count > sources[b].count;
+    });
     parallel_for(small.size(), options.threads, options.stop,
                  [&](std::size_t i) { build(small[i], 1); });
     if (options.stop.stop_requested()) throw Cancelled();
-    for (const std::size_t i : large)
-        build(i, options.threads);
 }
 
 // One tree for each mesh or set of `things`, but for those `without` one.

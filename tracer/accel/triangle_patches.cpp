@@ -1,14 +1,15 @@
 #include "tracer/accel/triangle_patches.h"
 
 #include "tracer/accel/same_corners.h"
+#include "tracer/accel/triangle_box.h"
 #include "tracer/error.h"
 #include "tracer/parallel/parallel.h"
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cassert>
 #include <cstring>
+#include <iterator>
 #include <span>
 #include <stdexcept>
 
@@ -18,90 +19,82 @@ namespace {
 
 using Blocks = LargeArray<TrianglePatches::Block>;
 
-// A patch of as many of a leaf's next triangles as fit into one.
-class PatchMaker {
-public:
-    // Of the first eight primitives at most.
-    PatchMaker(const Mesh& mesh, std::size_t member, std::span<const std::uint32_t> primitives) {
-        patch_.member = static_cast<std::uint16_t>(member & JoinedMeshes::kMostMeshes);
-        const std::size_t most = std::min<std::size_t>(primitives.size(), kTriangles);
-        for (std::size_t i = 0; i < most; ++i) {
-            primitives_[i] = primitives[i];
-            const glm::uvec3 t = mesh.triangles[primitives_[i]];
-            for (int k = 0; k < 3; ++k)
-                put_place(3 * i + static_cast<std::size_t>(k), mesh.positions[t[k]]);
+// Room for the largest patch, what is written beyond it, and zeros at its end.
+constexpr std::size_t kMostBlocks = 20;
+static_assert(kMostBlocks * sizeof(TrianglePatches::Block) >=
+              sizeof(TrianglePatch) + (8 + 3 * 16 + kWrittenBeyondPatch) * sizeof(float) + 16);
+
+// As three rows of four lanes.
+void store_four(CornerPlaces& places, std::size_t first, const std::array<Float4, 4>& corners) {
+    const auto& [a, b, c, d] = corners;
+    const Float4 xy = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+    const Float4 xy_next = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+    const Float4 z = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+    const Float4 z_next = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+    const std::array<Float4, 3> axes{__builtin_shufflevector(xy, xy_next, 0, 1, 4, 5),
+                                     __builtin_shufflevector(xy, xy_next, 2, 3, 6, 7),
+                                     __builtin_shufflevector(z, z_next, 0, 1, 4, 5)};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        std::memcpy(&places.along[axis][first], &axes[axis], sizeof axes[axis]);
+}
+
+// The corners of up to eight triangles; returns the box around them.
+Box4 find_places(const Mesh& mesh, std::span<const std::uint32_t> primitives,
+                 CornerPlaces& places) {
+    std::array<std::uint32_t, CornerPlaces::kMost> vertices;
+    const std::size_t count = 3 * primitives.size();
+    for (std::size_t i = 0; i < primitives.size(); ++i)
+        std::memcpy(&vertices[3 * i], &mesh.triangles[primitives[i]], 3 * sizeof vertices[0]);
+    std::fill_n(vertices.begin() + static_cast<std::ptrdiff_t>(count), (0u - count) % 4,
+                vertices[0]);
+    Box4 box;
+    for (std::size_t i = 0; i < count; i += 4) {
+        std::array<Float4, 4> corners;
+        for (std::size_t k = 0; k < 4; ++k) {
+            corners[k] = vertex_position(mesh, vertices[i + k]);
+            box.extend(corners[k]);
         }
-        find_first_corners(places_, 3 * most, first_);
-        while (patch_.triangles < most && add_triangle(patch_.triangles)) {
-        }
+        store_four(places, i, corners);
     }
+    return box;
+}
 
-    [[nodiscard]] std::uint32_t triangles() const { return patch_.triangles; }
-    void finish_leaf() { patch_.last = 1; }
+// Appends a patch of as many triangles as fit into one, and returns how many these are. It is the
+// last of its leaf if it takes all, and the leaf ends with them.
+std::size_t append_patch(const CornerPlaces& places, std::span<const std::uint32_t> primitives,
+                         std::size_t member, bool leaf_ends, Blocks& blocks) {
+    const std::size_t first = blocks.size();
+    blocks.resize(first + kMostBlocks);
+    auto& patch = *reinterpret_cast<TrianglePatch*>(blocks.data() + first);
+    auto* const numbers = reinterpret_cast<std::uint32_t*>(&patch + 1);
+    std::copy(primitives.begin(), primitives.end(), numbers);
+    const SharedCorners shared = share_corners(places, primitives.size(), patch);
+    patch.triangles = static_cast<std::uint8_t>(shared.triangles);
+    patch.corners = static_cast<std::uint8_t>(shared.corners);
+    patch.last = leaf_ends && shared.triangles == primitives.size() ? 1 : 0;
+    patch.member = static_cast<std::uint16_t>(member & JoinedMeshes::kMostMeshes);
+    std::memset(numbers + shared.triangles + std::size_t{3} * shared.corners, 0,
+                sizeof(TrianglePatches::Block));
+    blocks.resize(first + TrianglePatch::size(shared.triangles, shared.corners));
+    return shared.triangles;
+}
 
-    // Copies as much as there may be, as it takes less time than to copy what there is. What lies
-    // behind that is overwritten.
-    void append_to(Blocks& blocks) const {
-        constexpr std::size_t kMostBlocks = 16;
-        const std::size_t first = blocks.size();
-        blocks.resize(first + kMostBlocks);
-        auto* at = reinterpret_cast<std::byte*>(blocks.data() + first);
-        std::memcpy(at, &patch_, sizeof patch_);
-        at += sizeof patch_;
-        std::memcpy(at, primitives_.data(), sizeof primitives_);
-        at += patch_.triangles * sizeof(std::uint32_t);
-        for (const Coordinates& along : coordinates_) {
-            std::memcpy(at, along.data(), TrianglePatch::kMostCorners * sizeof(float));
-            at += patch_.corners * sizeof(float);
-        }
-        std::memset(at, 0, sizeof(TrianglePatches::Block));
-        blocks.resize(first + patch_.size());
+// Appends the patches of some triangles of a mesh; returns the box around them.
+Box4 append_patches(std::span<const std::uint32_t> triangles, const Mesh& mesh, std::size_t member,
+                    bool leaf_ends, Blocks& blocks) {
+    Box4 box;
+    std::array<std::uint32_t, TrianglePatch::kMostTriangles> some;
+    while (!triangles.empty()) {
+        const std::span primitives = std::span(some).first(std::min(triangles.size(), some.size()));
+        for (std::size_t i = 0; i < primitives.size(); ++i)
+            primitives[i] = triangles[i] & ~WideBvh::kLast;
+        CornerPlaces places;
+        box.extend(find_places(mesh, primitives, places));
+        const bool ends = leaf_ends && triangles.size() == primitives.size();
+        triangles = triangles.subspan(append_patch(places, primitives, member, ends, blocks));
     }
-
-private:
-    static constexpr std::size_t kTriangles = TrianglePatch::kMostTriangles;
-    // With room for a last triangle that doesn't fit.
-    using Coordinates = std::array<std::uint32_t, TrianglePatch::kMostCorners + 3>;  // as bits
-
-    void put_place(std::size_t i, const glm::vec3& position) {
-        const auto at = std::bit_cast<std::array<std::uint32_t, 3>>(position);
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            places_.along[axis][i] = at[axis];
-    }
-
-    // False if there is no room for its corners.
-    bool add_triangle(std::uint32_t triangle) {
-        std::uint32_t corners = patch_.corners;
-        std::array<std::uint32_t, 3> numbers{};
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t i = 3 * std::size_t{triangle} + k;
-            numbers[k] = first_[i] == i ? corners : numbers_[first_[i]];
-            corners += first_[i] == i ? 1u : 0u;
-            numbers_[i] = numbers[k];
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                coordinates_[axis][numbers[k]] = places_.along[axis][i];
-        }
-        if (corners > TrianglePatch::kMostCorners) return false;
-        for (std::size_t k = 0; k < 3; ++k)
-            patch_.corner[k] |= numbers[k] << (4 * triangle);
-        patch_.corners = static_cast<std::uint8_t>(corners);
-        ++patch_.triangles;
-        return true;
-    }
-
-    TrianglePatch patch_;
-    std::array<std::uint32_t, kTriangles> primitives_;
-    CornerPlaces places_;
-    FirstCorners first_;
-    std::array<std::uint32_t, CornerPlaces::kMost> numbers_;  // of the corners, in the patch
-    std::array<Coordinates, 3> coordinates_;
-};
-
-// A leaf, and where it stands in the tree.
-struct Leaf {
-    std::uint32_t* place = nullptr;
-    std::span<const std::uint32_t> primitives;
-};
+    return box;
+}
 
 // A leaf's primitives by member, and numbered as in their meshes.
 class LeafTriangles {
@@ -124,7 +117,8 @@ public:
             std::size_t end = begin;
             while (end < count_ && numbers_[end] < behind)
                 numbers_[end++] -= first;
-            body(member, std::span(numbers_).subspan(begin, end - begin), end == count_);
+            body(member, std::span<const std::uint32_t>(numbers_).subspan(begin, end - begin),
+                 end == count_);
             begin = end;
         }
     }
@@ -135,22 +129,23 @@ private:
     std::array<std::uint32_t, kWideSurfaceLeaves.max_leaf> numbers_{};
 };
 
-void append_patches(const Leaf& leaf, const JoinedMeshes& meshes, Blocks& blocks) {
-    LeafTriangles(leaf.primitives, meshes)
-        .each_member([&](std::size_t member, std::span<const std::uint32_t> primitives, bool last) {
-            while (!primitives.empty()) {
-                PatchMaker patch(meshes.mesh(member), member, primitives);
-                primitives = primitives.subspan(patch.triangles());
-                if (last && primitives.empty()) patch.finish_leaf();
-                patch.append_to(blocks);
-            }
+// Appends a leaf's patches; returns the box around its triangles.
+Box4 append_leaf(std::span<const std::uint32_t> primitives, const JoinedMeshes& meshes,
+                 Blocks& blocks) {
+    if (meshes.size() == 1) return append_patches(primitives, meshes.mesh(0), 0, true, blocks);
+    Box4 box;
+    LeafTriangles(primitives, meshes)
+        .each_member([&](std::size_t member, std::span<const std::uint32_t> some, bool last) {
+            box.extend(append_patches(some, meshes.mesh(member), member, last, blocks));
         });
+    return box;
 }
 
 // Calls body(mesh, triangle) for a leaf's triangles.
 template <typename Body>
-void each_triangle(const Leaf& leaf, const JoinedMeshes& meshes, const Body& body) {
-    for (const std::uint32_t primitive : leaf.primitives) {
+void each_triangle(std::span<const std::uint32_t> primitives, const JoinedMeshes& meshes,
+                   const Body& body) {
+    for (const std::uint32_t primitive : primitives) {
         const std::size_t number = primitive & ~WideBvh::kLast;
         const std::size_t member = meshes.member_of(number);
         const Mesh& mesh = meshes.mesh(member);
@@ -159,16 +154,39 @@ void each_triangle(const Leaf& leaf, const JoinedMeshes& meshes, const Body& bod
 }
 
 // Reads along the leaves' order jump about in the mesh, so the processor is told what comes.
-void fetch_triangles(const Leaf& leaf, const JoinedMeshes& meshes) {
+void fetch_triangles(std::span<const std::uint32_t> leaf, const JoinedMeshes& meshes) {
     each_triangle(leaf, meshes,
                   [](const Mesh&, const glm::uvec3& triangle) { __builtin_prefetch(&triangle); });
 }
-void fetch_corners(const Leaf& leaf, const JoinedMeshes& meshes) {
+void fetch_corners(std::span<const std::uint32_t> leaf, const JoinedMeshes& meshes) {
     each_triangle(leaf, meshes, [](const Mesh& mesh, const glm::uvec3& triangle) {
         for (int k = 0; k < 3; ++k)
             __builtin_prefetch(&mesh.positions[triangle[k]]);
     });
 }
+
+// Appends the patches of so many leaves, whose primitives are primitives_of(i), and calls
+// done(i, first block, box).
+template <typename PrimitivesOf, typename Done>
+void append_leaves(std::size_t count, const PrimitivesOf& primitives_of, const JoinedMeshes& meshes,
+                   Blocks& blocks, const Done& done) {
+    constexpr std::size_t kAhead = 4;  // leaves
+    for (std::size_t i = 0; i < count + 2 * kAhead; ++i) {
+        if (i < count) fetch_triangles(primitives_of(i), meshes);
+        const std::size_t next = i - kAhead;
+        if (next < count) fetch_corners(primitives_of(next), meshes);
+        const std::size_t now = next - kAhead;
+        if (now >= count) continue;
+        const auto first = static_cast<std::uint32_t>(blocks.size());
+        done(now, first, append_leaf(primitives_of(now), meshes, blocks));
+    }
+}
+
+// A leaf, and where it stands in the tree.
+struct Leaf {
+    std::uint32_t* place = nullptr;
+    std::span<const std::uint32_t> primitives;
+};
 
 // Some places in a tree, and the patches of the leaves among them.
 struct Portion {
@@ -180,7 +198,6 @@ struct Portion {
 
     // A leaf's index counts from the portion's first block then.
     void collect_leaves() {
-        constexpr std::size_t kAhead = 4;  // leaves
         std::vector<Leaf> leaves;
         leaves.reserve(kWidth * (end - begin));
         std::size_t triangles = 0;
@@ -188,23 +205,19 @@ struct Portion {
             leaves.push_back({&place, indices_of(bvh, {place})});
             triangles += leaves.back().primitives.size();
         });
-        blocks.reserve(2 * triangles);  // enough for surfaces
-        for (std::size_t i = 0; i < leaves.size() + 2 * kAhead; ++i) {
-            if (i < leaves.size()) fetch_triangles(leaves[i], meshes);
-            const std::size_t next = i - kAhead;
-            if (next < leaves.size()) fetch_corners(leaves[next], meshes);
-            const std::size_t now = next - kAhead;
-            if (now >= leaves.size()) continue;
-            *leaves[now].place = WideRef::leaf(static_cast<std::uint32_t>(blocks.size())).bits;
-            append_patches(leaves[now], meshes, blocks);
-        }
+        blocks.reserve(2 * triangles + kMostBlocks);  // enough for surfaces
+        append_leaves(
+            leaves.size(), [&](std::size_t i) { return leaves[i].primitives; }, meshes, blocks,
+            [&](std::size_t i, std::uint32_t first, const Box4& /*box*/) {
+                *leaves[i].place = WideRef::leaf(first).bits;
+            });
         blocks.shrink_to_fit();
     }
 
     void move_to(TrianglePatches& patches, std::size_t block) {
         std::copy(blocks.begin(), blocks.end(),
                   patches.blocks.begin() + static_cast<std::ptrdiff_t>(block));
-        blocks = {};
+        free_array(blocks);
         each_leaf([&](std::uint32_t& place) { place += static_cast<std::uint32_t>(block); });
     }
 
@@ -246,7 +259,7 @@ TrianglePatches take_triangles(WideBvh& bvh, const JoinedMeshes& meshes, int thr
     parallel_for(portions.size(), threads, stop,
                  [&](std::size_t i) { portions[i].collect_leaves(); });
     if (stop.stop_requested()) throw Cancelled();
-    bvh.indices = {};
+    free_array(bvh.indices);
     for (std::size_t i = 0; i < portions.size(); ++i)
         first[i + 1] = first[i] + portions[i].blocks.size();
     make_room(patches, first.back());
@@ -254,6 +267,47 @@ TrianglePatches take_triangles(WideBvh& bvh, const JoinedMeshes& meshes, int thr
                  [&](std::size_t i) { portions[i].move_to(patches, first[i]); });
     if (stop.stop_requested()) throw Cancelled();
     return patches;
+}
+
+PatchStore::PatchStore(const JoinedMeshes& meshes, std::size_t keys)
+    : meshes_(meshes), chunks_((keys + kKeysInChunk - 1) / kKeysInChunk) {
+    patches_.blocks.reserve(keys * 7 / 4 + kMostBlocks);  // enough for surfaces
+}
+
+LeafStore PatchStore::leaves() {
+    return {[this](std::size_t chunk, std::span<const MortonKey> keys,
+                   std::span<TreeletLeaf> leaves) { return store(chunk, keys, leaves); },
+            [this](std::size_t chunk) { append(chunk); }};
+}
+
+std::size_t PatchStore::store(std::size_t chunk, std::span<const MortonKey> keys,
+                              std::span<TreeletLeaf> leaves) {
+    std::array<std::uint32_t, kKeysInChunk> primitives;
+    for (std::size_t i = 0; i < keys.size(); ++i)
+        primitives[i] = keys[i].index;
+    Blocks& blocks = chunks_[chunk];
+    blocks.reserve(2 * keys.size() + kMostBlocks);  // enough for surfaces
+    append_leaves(
+        leaves.size(),
+        [&](std::size_t i) {
+            return std::span<const std::uint32_t>(&primitives[leaves[i].first], leaves[i].count);
+        },
+        meshes_, blocks,
+        [&](std::size_t i, std::uint32_t first, const Box4& box) {
+            leaves[i].first = first;
+            leaves[i].box = box;
+        });
+    return blocks.size();
+}
+
+void PatchStore::append(std::size_t chunk) {
+    patches_.blocks.insert(patches_.blocks.end(), chunks_[chunk].begin(), chunks_[chunk].end());
+    free_array(chunks_[chunk]);
+}
+
+TrianglePatches PatchStore::take() {
+    make_room(patches_, patches_.blocks.size());
+    return std::move(patches_);
 }
 
 }  // namespace raypick

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "tracer/accel/joined_meshes.h"
+#include "tracer/bvh/bvh_fast.h"
 #include "tracer/bvh/wide_bvh.h"
 #include "tracer/parallel/large_array.h"
 #include "tracer/scene/scene.h"
@@ -13,7 +14,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <stop_token>
+#include <vector>
 
 namespace raypick {
 
@@ -43,7 +46,10 @@ struct TrianglePatch {
         return {at[0], at[corners], at[std::size_t{2} * corners]};
     }
     // In blocks; the next patch of a leaf with more triangles follows.
-    [[nodiscard]] std::size_t size() const { return (4 + triangles + 3u * corners + 3) / 4; }
+    [[nodiscard]] std::size_t size() const { return size(triangles, corners); }
+    [[nodiscard]] static std::size_t size(std::size_t triangles, std::size_t corners) {
+        return (4 + triangles + 3u * corners + 3) / 4;
+    }
 };
 
 struct TrianglePatches {
@@ -63,6 +69,32 @@ struct TrianglePatches {
 // Cancelled.
 TrianglePatches take_triangles(WideBvh& bvh, const JoinedMeshes& meshes, int threads,
                                const std::stop_token& stop);
+// Of one mesh.
+inline TrianglePatches take_triangles(WideBvh& bvh, const Mesh& mesh, int threads,
+                                      const std::stop_token& stop) {
+    return take_triangles(bvh, JoinedMeshes({&mesh}), threads, stop);
+}
+
+// Puts a first tree's leaves into patches as they are made: a leaf's place is its first patch's
+// block.
+class PatchStore {
+public:
+    // The meshes must outlive it.
+    PatchStore(const JoinedMeshes& meshes, std::size_t keys);
+
+    [[nodiscard]] LeafStore leaves();
+    // The patches of all chunks, one after the other.
+    [[nodiscard]] TrianglePatches take();
+
+private:
+    std::size_t store(std::size_t chunk, std::span<const MortonKey> keys,
+                      std::span<TreeletLeaf> leaves);
+    void append(std::size_t chunk);
+
+    const JoinedMeshes& meshes_;
+    std::vector<LargeArray<TrianglePatches::Block>> chunks_;
+    TrianglePatches patches_;
+};
 
 // Calls body(patch) for a leaf's patches until it returns true, and returns whether it did.
 template <typename Body>

@@ -67,10 +67,6 @@ using BoxSource = std::function<void(std::size_t first, std::span<Bounds> boxes)
 Bvh build_bvh(std::size_t count, const BoxSource& boxes, const BvhOptions& options);
 Bvh build_bvh(std::span<const Bounds> boxes, int threads, const std::stop_token& stop);
 
-// The same sooner: a first tree to be used until the one for many rays is there. Boxes that are
-// near each other along a space-filling curve are put into one leaf without a look at other ways.
-Bvh build_bvh_fast(std::size_t count, const BoxSource& boxes, const BvhOptions& options);
-
 // Gives the nodes the bounds of moved boxes; which boxes stand in which leaf remains. The tree gets
 // slower the more the order of things has changed: sah_cost tells. A box that is empty or not
 // finite counts for nothing, and one that was left out when the tree was built remains so. Throws

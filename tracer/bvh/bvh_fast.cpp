@@ -3,22 +3,27 @@
 //
 // Source: Pantaleoni and Luebke, "HLBVH: Hierarchical LBVH Construction for Real-Time Ray Tracing
 // of Dynamic Geometry", 2010.
-#include "tracer/bvh/bvh.h"
+#include "tracer/bvh/bvh_fast.h"
+
+#include "tracer/bvh/best_children.h"
 #include "tracer/bvh/bvh_build.h"
-#include "tracer/bvh/morton.h"
-#include "tracer/bvh/treelet.h"
+#include "tracer/bvh/wide_nodes.h"
 #include "tracer/error.h"
+#include "tracer/parallel/in_order.h"
 #include "tracer/parallel/parallel.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 namespace raypick {
 
 namespace {
 
-constexpr std::size_t kChunk = 1u << 13;
 constexpr std::size_t kTreeletLeaves = 32;
+// See BestChildren.
+constexpr float kPerTreeletNode = 0.02f;
+constexpr float kPerUpperNode = 1e-5f;
 
 // How far neighbours stand apart: a radix tree, which splits the codes bit by bit, splits between
 // those first whose highest different bit is highest. Before the first and after the last there is
@@ -44,181 +49,219 @@ std::size_t subtree_end(std::size_t begin, std::size_t last, const Step& step) {
     return inside == 0 ? last : best;
 }
 
-// Treelets and their roots, whose index is the treelet's number.
+struct Treelet {
+    WideRef root;
+    Box4 box;
+};
+
+// A chunk's treelets, one after the other.
 struct Forest {
-    std::vector<BvhNode> nodes;         // one treelet after the other, places counted from its root
-    std::vector<std::uint32_t> begins;  // of each treelet's nodes, and the end
-    std::vector<BoxRef> roots;
-    RefBounds bounds;
+    LargeArray<WideNode> nodes;     // inner places are counted from the chunk's first node,
+    std::vector<Treelet> treelets;  // leaves from its first place
+    std::size_t places = 0;
 };
 
 // From one chunk of keys.
 class ForestBuilder {
 public:
-    ForestBuilder(std::span<const MortonKey> keys, std::uint32_t first_key, std::uint32_t leaf_size)
-        : keys_(keys), first_key_(first_key), leaf_size_(leaf_size) {}
+    ForestBuilder(std::span<const MortonKey> keys, std::uint32_t leaf_size)
+        : keys_(keys), leaf_size_(leaf_size) {}
 
-    // Sets the indices of the boxes in the keys' order, while they are at hand.
-    Forest build(std::span<const BoxRef> refs, std::span<std::uint32_t> indices) {
-        find_leaves(refs, indices);
-        forest_.nodes.reserve(2 * leaves_.size());
-        const auto step = [this](std::size_t i) {
-            return step_before(keys_,
-                               i < leaves_.size() ? leaves_[i].first - first_key_ : keys_.size());
-        };
+    Forest build(std::size_t chunk, const LeafStore& store) {
+        find_leaves();
+        forest_.places = store.store(chunk, keys_, leaves_);
+        forest_.nodes.reserve(leaves_.size() / 2);
+        const auto step = [this](std::size_t i) { return step_before(keys_, begins_[i]); };
         for (std::size_t begin = 0; begin < leaves_.size();) {
             const std::size_t last = std::min(leaves_.size(), begin + kTreeletLeaves);
             const std::size_t end = subtree_end(begin, last, step);
             add_treelet(std::span(leaves_).subspan(begin, end - begin));
             begin = end;
         }
-        forest_.begins.push_back(static_cast<std::uint32_t>(forest_.nodes.size()));
         return std::move(forest_);
     }
 
 private:
-    void find_leaves(std::span<const BoxRef> refs, std::span<std::uint32_t> indices) {
+    void find_leaves() {
         leaves_.reserve(keys_.size() / 2);
+        begins_.reserve(keys_.size() / 2);
         const auto step = [this](std::size_t i) { return step_before(keys_, i); };
         for (std::size_t begin = 0; begin < keys_.size();) {
             const std::size_t last = std::min<std::size_t>(keys_.size(), begin + leaf_size_);
             const std::size_t end = subtree_end(begin, last, step);
-            fetch(refs, end);
-            TreeletLeaf leaf;
-            leaf.first = first_key_ + static_cast<std::uint32_t>(begin);
-            leaf.count = static_cast<std::uint32_t>(end - begin);
-            for (std::size_t i = begin; i < end; ++i) {
-                const BoxRef& ref = refs[keys_[i].place];
-                leaf.box.extend(ref.box());
-                indices[i] = ref.index();
-            }
-            leaves_.push_back(leaf);
+            begins_.push_back(static_cast<std::uint32_t>(begin));
+            leaves_.push_back({{}, begins_.back(), static_cast<std::uint32_t>(end - begin)});
             begin = end;
         }
-    }
-
-    // Refs lie in no order, so the processor is told which ones come after the next few leaves.
-    void fetch(std::span<const BoxRef> refs, std::size_t begin) const {
-        begin += std::size_t{2} * leaf_size_;
-        const std::size_t end = std::min<std::size_t>(keys_.size(), begin + leaf_size_);
-        for (; begin < end; ++begin)
-            __builtin_prefetch(&refs[keys_[begin].place]);
+        begins_.push_back(static_cast<std::uint32_t>(keys_.size()));
     }
 
     void add_treelet(std::span<const TreeletLeaf> leaves) {
-        const std::size_t begin = forest_.nodes.size();
-        forest_.begins.push_back(static_cast<std::uint32_t>(begin));
-        append_treelet(forest_.nodes, leaves);
-        forest_.roots.push_back(make_ref(box4(forest_.nodes[begin].bounds), 0));
-        forest_.bounds.extend(forest_.roots.back());
+        treelet_.clear();
+        append_treelet(treelet_, leaves);
+        children_.find(treelet_, kPerTreeletNode);
+        const WideRef root = append_wide_nodes(
+            forest_.nodes, treelet_, 0, [this](std::uint32_t node) { return children_.of(node); },
+            [](const BvhNode& leaf) { return WideRef::leaf(leaf.first).bits; });
+        forest_.treelets.push_back({root, box4(treelet_.front().bounds)});
     }
 
     std::span<const MortonKey> keys_;
-    std::uint32_t first_key_;
     std::uint32_t leaf_size_;
     std::vector<TreeletLeaf> leaves_;
+    std::vector<std::uint32_t> begins_;  // first keys of the leaves, and the end
+    std::vector<BvhNode> treelet_;
+    BestChildren children_;
     Forest forest_;
 };
 
-// Sets the indices, too.
-std::vector<Forest> plant(std::span<const BoxRef> refs, std::span<const MortonKey> keys,
-                          std::span<std::uint32_t> indices, const BvhOptions& options) {
-    std::vector<Forest> forests((keys.size() + kChunk - 1) / kChunk);
-    parallel_for(forests.size(), options.threads, options.stop, [&](std::size_t i) {
-        const std::size_t begin = i * kChunk;
-        const std::size_t size = std::min(kChunk, keys.size() - begin);
-        ForestBuilder builder(keys.subspan(begin, size), static_cast<std::uint32_t>(begin),
-                              std::min(options.costs.max_leaf, options.costs.block_size));
-        forests[i] = builder.build(refs, indices.subspan(begin, size));
-    });
-    if (options.stop.stop_requested()) throw Cancelled();
-    return forests;
-}
+// All treelets, and then the tree over them.
+class Planter {
+public:
+    Planter(std::span<const MortonKey> keys, const LeafStore& store, const BvhOptions& options)
+        : keys_(keys),
+          store_(store),
+          options_(options),
+          forests_((keys.size() + kKeysInChunk - 1) / kKeysInChunk) {}
 
-// Where a treelet stands.
-struct TreeletPlace {
-    std::uint32_t forest = 0;
-    std::uint32_t treelet = 0;
+    void plant() {
+        const std::uint32_t leaf_size =
+            std::min(options_.costs.max_leaf, options_.costs.block_size);
+        tree_.nodes.reserve(keys_.size() / leaf_size / 2);  // enough for surfaces
+        InOrder in_order(forests_.size(), [this](std::size_t i) { append(i); });
+        parallel_for(forests_.size(), options_.threads, options_.stop, [&](std::size_t i) {
+            const std::size_t begin = i * kKeysInChunk;
+            const std::size_t size = std::min(kKeysInChunk, keys_.size() - begin);
+            forests_[i] = ForestBuilder(keys_.subspan(begin, size), leaf_size).build(i, store_);
+            in_order.ready(i);
+        });
+        if (options_.stop.stop_requested()) throw Cancelled();
+    }
+
+    // The upper nodes come last.
+    WideBvh join() {
+        if (roots_.empty()) return {};
+        BvhOptions one_each = options_;
+        one_each.costs = {
+            .node = 1.0f, .block = 1.0f, .block_size = 1, .min_leaf = 1, .max_leaf = 1};
+        boxes_.count = boxes_.storage.size();
+        const Bvh upper =
+            build_over_refs(std::move(boxes_), one_each, kMaxSplitDepth - kMostTreeletDepth);
+        tree_.bounds = upper.nodes.front().bounds;
+        BestChildren children;
+        children.find(upper.nodes, kPerUpperNode);
+        tree_.root = append_wide_nodes(
+            tree_.nodes, upper.nodes, 0, [&](std::uint32_t node) { return children.of(node); },
+            [&](const BvhNode& leaf) { return roots_[upper.indices[leaf.first]].bits; });
+        return std::move(tree_);
+    }
+
+private:
+    void append(std::size_t chunk) {
+        const Forest forest = std::move(forests_[chunk]);
+        const auto nodes = static_cast<std::uint32_t>(tree_.nodes.size());
+        const auto places = static_cast<std::uint32_t>(places_);
+        places_ += forest.places;
+        if (places_ >= WideRef::kLeaf) {
+            throw std::length_error("a tree has place for 2147483647 primitives");
+        }
+        for (const WideNode& node : forest.nodes) {
+            tree_.nodes.push_back(node);
+            move_children(tree_.nodes.back(), nodes, places);
+        }
+        for (const Treelet& treelet : forest.treelets) {
+            boxes_.storage.push_back(
+                make_ref(treelet.box, static_cast<std::uint32_t>(roots_.size())));
+            boxes_.bounds.extend(boxes_.storage.back());
+            roots_.push_back({treelet.root.bits + (treelet.root.is_leaf() ? places : nodes)});
+        }
+        if (store_.append) store_.append(chunk);
+    }
+
+    std::span<const MortonKey> keys_;
+    const LeafStore& store_;
+    const BvhOptions& options_;
+    std::vector<Forest> forests_;
+    WideBvh tree_;
+    std::vector<WideRef> roots_;  // of the treelets,
+    RefArray boxes_;              // and their boxes
+    std::size_t places_ = 0;
 };
 
-// The tree whose leaves are the treelets.
-struct UpperTree {
-    Bvh bvh;
-    std::vector<TreeletPlace> places;  // by the indices of the tree's leaves
+// All boxes, each asked for once, and a box around those that are usable.
+struct Boxes {
+    LargeArray<Box4> all;
+    Box4 around;
 };
 
-UpperTree join_roots(std::span<const Forest> forests, const BvhOptions& options) {
-    UpperTree upper;
-    std::size_t count = 0;
-    for (const Forest& forest : forests)
-        count += forest.roots.size();
-    RefArray roots = allocate_refs(count);
-    for (std::size_t i = 0; i < forests.size(); ++i) {
-        for (std::size_t k = 0; k < forests[i].roots.size(); ++k) {
-            const auto number = static_cast<std::uint32_t>(roots.count);
-            roots.storage[roots.count++] = with_index(forests[i].roots[k], number);
-            upper.places.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k)});
-        }
-        roots.bounds.extend(forests[i].bounds);
-    }
-    BvhOptions one_each = options;
-    one_each.costs = {.node = 1.0f, .block = 1.0f, .block_size = 1, .min_leaf = 1, .max_leaf = 1};
-    upper.bvh = build_over_refs(std::move(roots), one_each, kMaxSplitDepth - kMostTreeletDepth);
-    return upper;
-}
-
-BvhNode moved(BvhNode node, std::size_t offset) {
-    if (!node.is_leaf()) node.first += static_cast<std::uint32_t>(offset);
-    return node;
-}
-
-// Puts each treelet's root in place of the leaf that stands for it, and the rest behind them all.
-std::vector<BvhNode> open_treelets(UpperTree&& upper, std::span<const Forest> forests,
-                                   const BvhOptions& options) {
-    std::vector<BvhNode> nodes = std::move(upper.bvh.nodes);
-    const std::size_t upper_nodes = nodes.size();
-    std::vector<std::size_t> begins;
-    std::size_t end = upper_nodes;
-    for (const Forest& forest : forests) {
-        begins.push_back(end);
-        end += forest.nodes.size() - forest.roots.size();
-    }
-    nodes.resize(end);
-    // What is added to places counted from a treelet's root.
-    const auto offset = [&](std::size_t forest, std::size_t treelet) {
-        return begins[forest] + forests[forest].begins[treelet] - treelet - 1;
-    };
-    parallel_for(forests.size(), options.threads, options.stop, [&](std::size_t i) {
-        std::size_t next = begins[i];
-        for (std::size_t treelet = 0; treelet < forests[i].roots.size(); ++treelet) {
-            const std::uint32_t root = forests[i].begins[treelet];
-            for (std::uint32_t k = root + 1; k < forests[i].begins[treelet + 1]; ++k)
-                nodes[next++] = moved(forests[i].nodes[k], offset(i, treelet));
+Boxes find_boxes(std::size_t count, const BoxSource& source, const BvhOptions& options) {
+    constexpr std::size_t kChunk = 1u << 12;
+    Boxes boxes;
+    boxes.all.resize(count);
+    std::vector<Box4> around((count + kChunk - 1) / kChunk);
+    parallel_for(around.size(), options.threads, options.stop, [&](std::size_t i) {
+        std::vector<Bounds> some(std::min(kChunk, count - i * kChunk));
+        source(i * kChunk, some);
+        for (std::size_t k = 0; k < some.size(); ++k) {
+            const Box4 box = box4(some[k]);
+            if (is_usable(box)) around[i].extend(box);
+            boxes.all[i * kChunk + k] = box;
         }
     });
     if (options.stop.stop_requested()) throw Cancelled();
-    for (std::size_t i = 0; i < upper_nodes; ++i) {
-        if (!nodes[i].is_leaf()) continue;
-        const TreeletPlace at = upper.places[upper.bvh.indices[nodes[i].first]];
-        const Forest& forest = forests[at.forest];
-        nodes[i] = moved(forest.nodes[forest.begins[at.treelet]], offset(at.forest, at.treelet));
-    }
-    return nodes;
+    for (const Box4& box : around)
+        boxes.around.extend(box);
+    return boxes;
 }
+
+// Leaves hold the boxes' indices.
+class IndexStore {
+public:
+    IndexStore(std::span<const Box4> boxes, std::span<std::uint32_t> indices)
+        : boxes_(boxes), indices_(indices) {}
+
+    std::size_t operator()(std::size_t chunk, std::span<const MortonKey> keys,
+                           std::span<TreeletLeaf> leaves) const {
+        const std::span<std::uint32_t> indices =
+            indices_.subspan(chunk * kKeysInChunk, keys.size());
+        for (TreeletLeaf& leaf : leaves) {
+            const std::uint32_t last = leaf.first + leaf.count - 1;
+            for (std::uint32_t i = leaf.first; i <= last; ++i) {
+                indices[i] = keys[i].index;
+                leaf.box.extend(boxes_[keys[i].index]);
+            }
+            indices[last] |= WideBvh::kLast;
+        }
+        return keys.size();
+    }
+
+private:
+    std::span<const Box4> boxes_;
+    std::span<std::uint32_t> indices_;
+};
 
 }  // namespace
 
-Bvh build_bvh_fast(std::size_t count, const BoxSource& boxes, const BvhOptions& options) {
-    RefArray array = make_refs(count, boxes, options);
-    LargeArray<MortonKey> keys = morton_order(array, options);
-    Bvh bvh;
-    bvh.indices.resize(keys.size());
-    const std::vector<Forest> forests = plant(array.refs(), keys, bvh.indices, options);
-    array = {};
-    keys = {};
-    if (!forests.empty()) {
-        bvh.nodes = open_treelets(join_roots(forests, options), forests, options);
-    }
+WideBvh build_over_keys(LargeArray<MortonKey> keys, const LeafStore& store,
+                        const BvhOptions& options) {
+    Planter planter(keys, store, options);
+    planter.plant();
+    free_array(keys);
+    return planter.join();
+}
+
+WideBvh build_bvh_fast(std::size_t count, const BoxSource& boxes, const BvhOptions& options) {
+    const Boxes known = find_boxes(count, boxes, options);
+    const Box4Source source = [&known](std::size_t first, std::span<Box4> wanted) {
+        std::copy_n(known.all.begin() + static_cast<std::ptrdiff_t>(first), wanted.size(),
+                    wanted.begin());
+    };
+    LargeArray<MortonKey> keys = morton_order(count, source, known.around, options);
+    LargeArray<std::uint32_t> indices;
+    indices.resize(keys.size());
+    WideBvh bvh =
+        build_over_keys(std::move(keys), {IndexStore(known.all, indices), nullptr}, options);
+    bvh.indices = std::move(indices);
     return bvh;
 }
 

@@ -28,10 +28,10 @@ Cut best_cut(std::span<const TreeletLeaf> leaves) {
     std::array<float, kMostTreeletLeaves> right_cost;
     const std::size_t count = leaves.size();
     Box4 right;
-    if (count == 2) {  // as every second range
-        right.extend(leaves[0].box);
-        right.extend(leaves[1].box);
-        return {1, right};
+    if (count <= 4) {  // one wide node has place for all: where they are cut matters little
+        for (const TreeletLeaf& leaf : leaves)
+            right.extend(leaf.box);
+        return {static_cast<std::uint32_t>(count / 2), right};
     }
     for (std::size_t i = count - 1; i > 0; --i) {
         right.extend(leaves[i].box);

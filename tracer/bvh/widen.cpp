@@ -1,10 +1,10 @@
 // From binary nodes to wide ones: the nodes near the root first, then the subtrees below them, each
 // by one thread, then all in one array.
 #include "tracer/bvh/wide_bvh.h"
+#include "tracer/bvh/wide_nodes.h"
 #include "tracer/error.h"
 #include "tracer/parallel/parallel.h"
 
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -13,56 +13,11 @@ namespace raypick {
 
 namespace {
 
-void set_box(WideNode& node, std::uint32_t i, const Bounds& box) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        node.planes[axis][i] = box.min[static_cast<int>(axis)];
-        node.planes[3 + axis][i] = box.max[static_cast<int>(axis)];
-    }
-}
-
 // Marks its end among the indices.
 WideRef leaf_of(const BvhNode& leaf, WideBvh& wide) {
     wide.indices[leaf.first + leaf.count - 1] |= WideBvh::kLast;
     return WideRef::leaf(leaf.first);
 }
-
-// Binary nodes that become one wide node's children.
-struct Children {
-    std::array<std::uint32_t, kWidth> node{};
-    std::uint32_t count = 0;
-};
-
-// Opens the inner node with the largest surface until there are eight, or only leaves.
-Children open_node(const std::vector<BvhNode>& nodes, std::uint32_t root) {
-    Children children;
-    std::array<float, kWidth> area{};  // -1: a leaf
-    const auto put = [&](std::uint32_t i, std::uint32_t node) {
-        children.node[i] = node;
-        area[i] = nodes[node].is_leaf() ? -1.0f : nodes[node].bounds.half_area();
-    };
-    put(0, nodes[root].first);
-    put(1, nodes[root].first + 1);
-    for (children.count = 2; children.count < kWidth; ++children.count) {
-        std::uint32_t widest = kWidth;
-        float most = -1.0f;
-        for (std::uint32_t i = 0; i < children.count; ++i) {
-            if (!(area[i] > most)) continue;
-            most = area[i];
-            widest = i;
-        }
-        if (widest == kWidth) break;
-        const std::uint32_t first = nodes[children.node[widest]].first;
-        put(widest, first);
-        put(children.count, first + 1);
-    }
-    return children;
-}
-
-// A binary node to become a wide one.
-struct Pending {
-    std::uint32_t binary = 0;
-    std::uint32_t wide = 0;
-};
 
 // A wide node near the root, or the root of a subtree. Inner children are places, too.
 struct Place {
@@ -80,7 +35,7 @@ struct Subtree {
 // Nodes are numbered depth first, so that what a ray meets one after the other lies close together.
 class Widener {
 public:
-    Widener(const std::vector<BvhNode>& nodes, WideBvh& wide) : nodes_(nodes), wide_(wide) {}
+    Widener(std::span<const BvhNode> nodes, WideBvh& wide) : nodes_(nodes), wide_(wide) {}
 
     void run(int threads, const std::stop_token& stop) {
         open_top(threads == 1 ? 1 : kSubtrees);
@@ -99,57 +54,30 @@ public:
 private:
     static constexpr std::size_t kSubtrees = 128;  // enough for many threads
 
-    // Without the inner children's numbers: inner(i, binary node) is called for these.
-    template <typename Inner>
-    void fill_node(WideNode& node, std::uint32_t binary, const Inner& inner) {
-        const Children children = open_node(nodes_, binary);
-        node.order.fill(0);
-        node.child.fill(WideRef::kNothing);
-        for (std::uint32_t i = 0; i < kWidth; ++i) {
-            if (i >= children.count) {
-                set_box(node, i, Bounds{});
-                continue;
-            }
-            const BvhNode& child = nodes_[children.node[i]];
-            set_box(node, i, child.bounds);
-            if (child.is_leaf()) node.child[i] = leaf_of(child, wide_).bits;
-        }
-        node.sort_children();
-        // The last comes first, so that the first is what is opened next.
-        for (std::uint32_t i = children.count; i-- > 0;) {
-            if (!nodes_[children.node[i]].is_leaf()) node.child[i] = inner(children.node[i]);
-        }
+    [[nodiscard]] auto leaf() {
+        return [this](const BvhNode& node) { return leaf_of(node, wide_).bits; };
     }
 
     // Fills places until there are so many others.
     void open_top(std::size_t subtrees) {
         places_.push_back({});
         for (; opened_ < places_.size() && places_.size() - opened_ < subtrees; ++opened_) {
-            WideNode node;
-            fill_node(node, places_[opened_].binary, [this](std::uint32_t binary) {
-                places_.push_back({binary, 0, {}});
-                return static_cast<std::uint32_t>(places_.size() - 1);
-            });
+            const WideNode node =
+                make_wide_node(nodes_, open_node(nodes_, places_[opened_].binary), leaf(),
+                               [this](std::uint32_t n) {
+                                   places_.push_back({n, 0, {}});
+                                   return static_cast<std::uint32_t>(places_.size() - 1);
+                               });
             places_[opened_].node = node;
         }
         subtrees_.resize(places_.size() - opened_);
     }
 
     void widen_subtree(std::size_t which) {
-        LargeArray<WideNode> nodes(1);
-        std::vector<Pending> todo{{places_[opened_ + which].binary, 0}};
-        while (!todo.empty()) {
-            const Pending at = todo.back();
-            todo.pop_back();
-            WideNode node;
-            fill_node(node, at.binary, [&](std::uint32_t binary) {
-                const auto wide = static_cast<std::uint32_t>(nodes.size());
-                nodes.emplace_back();
-                todo.push_back({binary, wide});
-                return wide;
-            });
-            nodes[at.wide] = node;
-        }
+        LargeArray<WideNode> nodes;
+        append_wide_nodes(
+            nodes, nodes_, places_[opened_ + which].binary,
+            [this](std::uint32_t node) { return open_node(nodes_, node); }, leaf());
         subtrees_[which].nodes = std::move(nodes);
     }
 
@@ -192,14 +120,12 @@ private:
             WideNode& node =
                 wide_.nodes[i == 0 ? places_[opened_ + which].wide : subtree.begin + i - 1];
             node = subtree.nodes[i];
-            for (std::uint32_t& child : node.child) {
-                if (!WideRef{child}.is_leaf()) child += subtree.begin - 1;
-            }
+            move_children(node, subtree.begin - 1, 0);
         }
-        subtree.nodes = {};
+        free_array(subtree.nodes);
     }
 
-    const std::vector<BvhNode>& nodes_;
+    std::span<const BvhNode> nodes_;
     WideBvh& wide_;
     std::vector<Place> places_;
     std::size_t opened_ = 0;  // places near the root; the others have subtrees

@@ -45,4 +45,10 @@ struct LargeAllocator {
 template <typename T>
 using LargeArray = std::vector<T, LargeAllocator<T>>;
 
+// Gives the memory back, which `array = {}` and clear() don't.
+template <typename T>
+void free_array(LargeArray<T>& array) {
+    LargeArray<T>().swap(array);
+}
+
 }  // namespace raypick
