@@ -11,7 +11,7 @@ namespace raypick {
 
 namespace {
 
-constexpr std::size_t kChunk = 1u << 14;
+constexpr std::size_t kBoxesInChunk = 1u << 14;
 
 struct Chunk {
     std::size_t count = 0;
@@ -53,15 +53,15 @@ RefArray allocate_refs(std::size_t count) {
 
 RefArray make_refs(std::size_t count, const BoxSource& boxes, const BvhOptions& options) {
     RefArray array = allocate_refs(count);
-    std::vector<Chunk> chunks((count + kChunk - 1) / kChunk);
+    std::vector<Chunk> chunks((count + kBoxesInChunk - 1) / kBoxesInChunk);
     parallel_for(chunks.size(), options.threads, options.stop, [&](std::size_t i) {
-        chunks[i] =
-            fill_chunk(boxes, i * kChunk, std::min(count, (i + 1) * kChunk), array.storage.data());
+        chunks[i] = fill_chunk(boxes, i * kBoxesInChunk, std::min(count, (i + 1) * kBoxesInChunk),
+                               array.storage.data());
     });
     if (options.stop.stop_requested()) throw Cancelled();
     for (std::size_t i = 0; i < chunks.size(); ++i) {
-        BoxRef* begin = array.storage.data() + i * kChunk;
-        if (array.count != i * kChunk)
+        BoxRef* begin = array.storage.data() + i * kBoxesInChunk;
+        if (array.count != i * kBoxesInChunk)
             std::copy(begin, begin + chunks[i].count, array.storage.data() + array.count);
         array.count += chunks[i].count;
         array.bounds.extend(chunks[i].bounds);

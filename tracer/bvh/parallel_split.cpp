@@ -12,15 +12,15 @@ namespace {
 
 // Work goes by chunks of this many refs whatever the number of threads, since the order in which
 // refs end up depends on it.
-constexpr std::size_t kChunk = 1u << 13;
+constexpr std::size_t kRefsInChunk = 1u << 13;
 
 std::size_t chunks_of(std::size_t refs) {
-    return (refs + kChunk - 1) / kChunk;
+    return (refs + kRefsInChunk - 1) / kRefsInChunk;
 }
 
 std::span<BoxRef> chunk_of(std::span<BoxRef> refs, std::size_t chunk) {
-    const std::size_t begin = chunk * kChunk;
-    return refs.subspan(begin, std::min(kChunk, refs.size() - begin));
+    const std::size_t begin = chunk * kRefsInChunk;
+    return refs.subspan(begin, std::min(kRefsInChunk, refs.size() - begin));
 }
 
 template <typename Body>
@@ -72,9 +72,9 @@ std::vector<Swap> join_chunks(std::span<const SplitSides> chunks, std::size_t re
     std::vector<Run> lefts;   // of the left side's refs behind the middle
     std::vector<Run> rights;  // of the right side's refs before it
     for (std::size_t i = 0; i < chunks.size(); ++i) {
-        const std::size_t begin = i * kChunk;
+        const std::size_t begin = i * kRefsInChunk;
         const std::size_t border = begin + chunks[i].left;
-        const std::size_t end = std::min(begin + kChunk, refs);
+        const std::size_t end = std::min(begin + kRefsInChunk, refs);
         if (border > middle) lefts.push_back({std::max(begin, middle), border});
         if (border < middle) rights.push_back({border, std::min(end, middle)});
     }

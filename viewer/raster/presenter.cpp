@@ -54,7 +54,7 @@ Program make_present_program(std::span<const std::string> defines) {
     return program;
 }
 
-void set_state() {
+void set_quad_state() {
     for (const GLenum capability :
          std::initializer_list<GLenum>{GL_BLEND, GL_SCISSOR_TEST, GL_CULL_FACE, GL_DEPTH_TEST,
                                        GL_STENCIL_TEST, GL_FRAMEBUFFER_SRGB}) {
@@ -108,7 +108,7 @@ void Presenter::present(unsigned colour_texture, unsigned object_texture, const 
                         int framebuffer_rows, std::span<const ObjectId> selected, ObjectId hovered,
                         const OutlineStyle& style) {
     if (view.size.rows <= 0 || view.size.cols <= 0 || colour_texture == 0) return;
-    set_state();
+    set_quad_state();
     // The view's bottom row, counted from the framebuffer's bottom.
     const ImageSize framebuffer{framebuffer_rows, view.top_left.col + view.size.cols};
     const int bottom = gl_row(framebuffer, view.top_left.row + view.size.rows - 1);
