@@ -10,9 +10,13 @@
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
+#include <unistd.h>
+
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <string>
 
 namespace raypick {
 namespace {
@@ -31,7 +35,8 @@ protected:
         GlTest::SetUp();
         if (!context_) return;
         const std::filesystem::path folder =
-            std::filesystem::path(::testing::TempDir()) / "raypick_footprint";
+            std::filesystem::path(::testing::TempDir()) /
+            ("raypick_footprint" + std::to_string(::getpid()));  // other tests run at the same time
         std::filesystem::create_directories(folder);
         for (const EmbeddedShader& shader : embedded_shaders())
             std::ofstream(folder / shader.name) << shader.text;
@@ -47,6 +52,7 @@ protected:
         ASSERT_EQ(setenv("RAYPICK_SHADER_DIR", folder.c_str(), 1), 0);
         program_ = make_program("fullscreen.vert", "footprint.frag");
         ASSERT_EQ(unsetenv("RAYPICK_SHADER_DIR"), 0);
+        std::filesystem::remove_all(folder);
         target_ = make_texture(kRgba32f, {1, 1});
         const GLuint names[] = {target_.name()};
         framebuffer_ = make_framebuffer(names);

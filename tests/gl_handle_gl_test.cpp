@@ -13,8 +13,12 @@
 
 #include <gmock/gmock.h>
 
+#include <unistd.h>
+
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -213,8 +217,8 @@ TEST_F(ProgramTest, DestroyedNamesAreGone) {
 }
 
 TEST_F(ProgramTest, ErrorsNameTheFileAndTheLine) {
-    const std::filesystem::path folder =
-        std::filesystem::path(::testing::TempDir()) / "raypick_shaders";
+    const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) /
+                                         ("raypick_shaders" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder);
     std::ofstream(folder / "fullscreen.vert") << "void main() { gl_Position = vec4(0.0); }\n";
     std::ofstream(folder / "bad.frag") << "// fine\n#include \"worse.glsl\"\nvoid main() {}\n";
@@ -229,6 +233,7 @@ TEST_F(ProgramTest, ErrorsNameTheFileAndTheLine) {
     }
     EXPECT_THROW(make_program("fullscreen.vert", "absent.frag"), Error);
     ASSERT_EQ(unsetenv("RAYPICK_SHADER_DIR"), 0);
+    std::filesystem::remove_all(folder);
 }
 
 TEST(ShaderSources, IncludesStandOnceAndLinesCount) {
