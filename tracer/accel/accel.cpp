@@ -69,10 +69,11 @@ void open_entry(const AccelState& state, std::size_t which, std::vector<PlacedEn
 // their parts would have rays to be transformed again; so does the joined tree, which knows more of
 // its parts than the top tree can.
 void open_entries(const AccelState& state, std::vector<PlacedEntry>& entries,
-                  const std::stop_token& stop) {
-    constexpr std::size_t kMostParts = 64;  // an object, on average
+                  const BuildOptions& options) {
+    // An object, on average.
+    const std::size_t most_parts = options.quality == TreeQuality::first ? 16 : 64;
     if (entries.size() < 2) return;
-    const std::size_t most = entries.size() * kMostParts;
+    const std::size_t most = entries.size() * most_parts;
     using Candidate = std::pair<float, std::size_t>;  // area, which
     std::priority_queue<Candidate> candidates;
     const auto consider = [&](std::size_t which) {
@@ -85,7 +86,7 @@ void open_entries(const AccelState& state, std::vector<PlacedEntry>& entries,
     for (std::size_t i = 0; i < entries.size(); ++i)
         consider(i);
     while (!candidates.empty() && entries.size() + kWidth <= most) {
-        throw_if_stopped(stop);
+        throw_if_stopped(options.stop);
         const std::size_t which = candidates.top().second;
         candidates.pop();
         const std::size_t before = entries.size();
@@ -141,7 +142,7 @@ void place_objects(AccelState& state, const BuildOptions& options) {
         }
     }
     place_joined(state, entries);
-    open_entries(state, entries, options.stop);
+    open_entries(state, entries, options);
     std::vector<Bounds> boxes;
     for (const PlacedEntry& placed : entries) {
         state.entries.push_back(placed.entry);

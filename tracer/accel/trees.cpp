@@ -164,7 +164,7 @@ std::size_t least_for_all_threads(std::span<const TreeSource> sources, int threa
     for (const TreeSource& source : sources)
         sum += source.count;
     const int workers = threads > 0 ? threads : hardware_threads();
-    return std::max(kLeast, sum / (4u * static_cast<std::size_t>(workers)));
+    return std::max(kLeast, sum / (2u * static_cast<std::size_t>(workers)));
 }
 
 // Those that `trees` lacks: large ones one after the other, each on all threads; then the others
