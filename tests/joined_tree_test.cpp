@@ -111,6 +111,21 @@ TEST(JoinedTree, IsBuiltAnewWhenMostOfItIsGone) {
     EXPECT_THAT(build_trees(scene, {}, &after).joined, IsNull());
 }
 
+TEST(JoinedTree, IsNotBuiltForWhatHasTrees) {
+    Scene scene;
+    for (int i = 0; i < 4; ++i)
+        place_mesh(scene, ball_data(1));
+    const SceneTrees before = build_trees(scene, {}, nullptr);
+    for (int i = 0; i < 4; ++i)
+        place_mesh(scene, ball_data(1));
+    const SceneTrees after = build_trees(scene, {}, &before);
+    EXPECT_THAT(after.joined, IsNull());
+    EXPECT_EQ(after.meshes[3], before.meshes[3]);
+    EXPECT_THAT(build_trees(scene, {}, nullptr).joined, NotNull());
+    const SceneTrees first = build_trees(scene, {.quality = TreeQuality::first}, nullptr);
+    EXPECT_THAT(build_trees(scene, {}, &first).joined, NotNull());
+}
+
 TEST(JoinedTree, IsTheSameForAnyNumberOfThreads) {
     const Scene scene = soups();
     const SceneTrees one = build_trees(scene, {.threads = 1}, nullptr);

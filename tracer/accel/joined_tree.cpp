@@ -9,14 +9,19 @@
 
 namespace raypick {
 
-namespace {
-
-// With triangles, where one object has them as they are and no other has them.
-std::vector<JoinableMesh> meshes_in_place(const Scene& scene) {
+std::vector<std::uint32_t> count_uses(const Scene& scene) {
     std::vector<std::uint32_t> uses(scene.meshes.size());
     for (const Object& object : scene.objects) {
         if (const auto* instance = std::get_if<MeshInstance>(&object.shape)) ++uses[instance->mesh];
     }
+    return uses;
+}
+
+namespace {
+
+// With triangles, where one object has them as they are and no other has them.
+std::vector<JoinableMesh> meshes_in_place(const Scene& scene) {
+    const std::vector<std::uint32_t> uses = count_uses(scene);
     std::vector<JoinableMesh> meshes;
     for (const Object& object : scene.objects) {
         const auto* instance = std::get_if<MeshInstance>(&object.shape);

@@ -24,6 +24,9 @@ inline TreeArrays arrays_of(const Mesh& mesh) {
 
 inline constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
 
+// By mesh: how many objects have it.
+std::vector<std::uint32_t> count_uses(const Scene& scene);
+
 struct JoinableMesh {
     const Mesh* mesh = nullptr;
     Bounds bounds;

@@ -239,9 +239,18 @@ bool still_pays(const JoinedTree& joined, const Scene& scene,
     return there > joined.tree.count / 2;
 }
 
+// Whether some mesh has a tree for many rays.
+bool has_quality_tree(const SceneTrees& trees) {
+    return std::any_of(trees.meshes.begin(), trees.meshes.end(), [](const auto& tree) {
+        return tree != nullptr && tree->quality == TreeQuality::many_rays;
+    });
+}
+
+// What already has trees of its own for many rays keeps them: edits are not to wait for others.
 void set_joined(SceneTrees& trees, const Scene& scene, const BuildOptions& options,
                 const SceneTrees* reuse) {
     if (options.quality != TreeQuality::many_rays) return;
+    if (reuse != nullptr && reuse->joined == nullptr && has_quality_tree(*reuse)) return;
     if (reuse != nullptr && reuse->joined != nullptr) {
         trees.joined_objects = objects_of_members(scene, reuse->joined->members);
         if (still_pays(*reuse->joined, scene, trees.joined_objects)) {
@@ -257,10 +266,7 @@ void set_joined(SceneTrees& trees, const Scene& scene, const BuildOptions& optio
 
 // By mesh: whether all its objects stand in the joined tree.
 std::vector<bool> meshes_joined(const Scene& scene, const SceneTrees& trees) {
-    std::vector<std::uint32_t> others(scene.meshes.size());
-    for (const Object& object : scene.objects) {
-        if (const auto* mesh = std::get_if<MeshInstance>(&object.shape)) ++others[mesh->mesh];
-    }
+    std::vector<std::uint32_t> others = count_uses(scene);
     std::vector<bool> joined(scene.meshes.size());
     for (const std::uint32_t object : trees.joined_objects) {
         if (object == kNobody) continue;
