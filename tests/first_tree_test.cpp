@@ -235,9 +235,11 @@ void expect_holds(const FirstTree& tree, const Mesh& mesh, const WideRef& ref, c
     EXPECT_EQ(inside.max, box.max);
 }
 
-// Surfaces whose leaves take a patch each, and triangles apart, whose leaves take two.
+// Surfaces whose leaves take a patch each, triangles apart, whose leaves take two, and a second
+// chunk of one leaf.
 std::vector<Mesh> meshes() {
     return {make_mesh("ball", ball_data(6)), make_mesh("soup", soup_data(1, 30000, 0.05)),
+            make_mesh("and a leaf", soup_data(4, kKeysInChunk + 3, 0.1)),
             make_mesh("few", soup_data(2, 3, 0.5)), make_mesh("one", soup_data(3, 1, 0.5))};
 }
 
