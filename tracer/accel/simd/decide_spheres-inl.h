@@ -42,6 +42,7 @@ class SpheresDecided {
 public:
     // As of ConesDecided, with nothing but a side.
     std::uint32_t ordinary = 0;
+    std::uint32_t misses = 0;
     std::uint32_t enters_by_side = ~0u;
     std::uint32_t leaves_by_side = ~0u;
     HWY_ALIGN LaneDoubles enters_at, leaves_at;
@@ -65,7 +66,9 @@ public:
         const DoubleVector t1 = hn::Div(q, a);
         from_ = smaller(t0, t1);
         to_ = larger(t0, t1);
-        ordinary = double_bits(hn::And(hn::Ge(discriminant, zero), hn::Gt(hn::Abs(q), zero)));
+        const auto meets = hn::Ge(discriminant, zero);
+        ordinary = double_bits(hn::And(meets, hn::Gt(hn::Abs(q), zero)));
+        misses = ~double_bits(meets);
         hn::Store(from_, d, enters_at.data());
         hn::Store(to_, d, leaves_at.data());
     }

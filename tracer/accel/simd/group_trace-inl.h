@@ -15,6 +15,7 @@
 #include "tracer/accel/simd/group_spheres-inl.h"
 #include "tracer/accel/simd/group_triangles-inl.h"
 #include "tracer/accel/simd/interleaved-inl.h"
+#include "tracer/accel/simd/open_elements-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
 
 #include <cstddef>
@@ -30,7 +31,12 @@ class GroupTrace {
 public:
     GroupTrace(const AccelState& state, std::span<const Ray> rays, const RayQuery& query,
                Group& search)
-        : state_(state), rays_(rays), query_(query), search_(search) {}
+        : state_(state),
+          rays_(rays),
+          query_(query),
+          search_(search),
+          open_spheres_(state, rays, query),
+          open_cones_(state, rays, query) {}
 
     // The rays of the mask, all usable, in one octant and with t_min >= 0; `world` holds them.
     void run(const GroupRays& group, RayMask mask) {
@@ -38,6 +44,7 @@ public:
             each_on_its_own({object, {}}, mask);
         if (state_.top.empty()) return;
         enter_world(GroupSpace(group, mask, 0.0f, state_.reach), mask);
+        decide_last();
     }
 
     // The same backwards.
@@ -46,6 +53,7 @@ public:
             each_on_its_own({object, {}}, mask);
         if (state_.top.empty()) return;
         enter_world(GroupSpace(back.rays, mask, 0.0f, state_.reach, back.course), mask);
+        decide_last();
     }
 
 private:
@@ -331,8 +339,8 @@ private:
     }
 
     template <typename Shape>
-    void settle(const GroupSpace& space, const Verdict& verdict, std::size_t ray, RayMask bits,
-                Taken<Shape>& taken) {
+    HWY_NOINLINE void settle(const GroupSpace& space, const Verdict& verdict, std::size_t ray,
+                             RayMask bits, Taken<Shape>& taken) {
         RayMask open = 0;
         if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
             open = take(search_, verdict, ray, bits, taken) << ray;
@@ -347,6 +355,13 @@ private:
                 decide_open(space, taken.object, taken.shape, taken.primitive, open);
                 return;
             }
+        } else if (!taken.instance.holes) {
+            auto& later = open_like(taken.shape);
+            each_ray(open, [&](std::size_t i) HWY_ATTR {
+                later.add({i, taken.object, taken.primitive});
+                if (later.full()) decide_open(later);
+            });
+            return;
         }
         if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
             each_ray(open, [&](std::size_t i)
@@ -392,6 +407,25 @@ private:
             settle_one);
     }
 
+    OpenSpheres& open_like(const GroupSphere& /*shape*/) { return open_spheres_; }
+    OpenCones& open_like(const GroupCone& /*shape*/) { return open_cones_; }
+
+    template <typename Elements>
+    HWY_NOINLINE void decide_open(Elements& elements) {
+        elements.decide([&](const OpenElement& open, float t)
+                            HWY_ATTR { offer(open.ray, open.object, open.primitive, t); },
+                        [&](const OpenElement& open) HWY_ATTR {
+                            auto one = one_of(search_, open.ray, open.object);
+                            trace_primitive(state_, open.object, open.primitive, rays_[open.ray],
+                                            query_, one);
+                        });
+    }
+
+    void decide_last() {
+        if (!open_spheres_.empty()) decide_open(open_spheres_);
+        if (!open_cones_.empty()) decide_open(open_cones_);
+    }
+
     HWY_INLINE void offer_open(std::uint32_t index, std::uint32_t primitive, std::size_t ray,
                                const TriangleAnswers& answers, std::size_t lane) {
         if (!answers.hits(lane, rays_[ray].t_min, rays_[ray].t_max)) return;
@@ -414,6 +448,9 @@ private:
     std::span<const Ray> rays_;
     const RayQuery& query_;
     Group& search_;
+    // Nothing is left of them at the end.
+    OpenSpheres open_spheres_;
+    OpenCones open_cones_;
 };
 
 }  // namespace raypick::HWY_NAMESPACE
