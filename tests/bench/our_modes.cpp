@@ -23,6 +23,14 @@ Tally tally(std::span<const Hit> hits) {
     return sum;
 }
 
+// Triangles have their barycentric coordinates whatever a query asks for, as Embree's have. Nobody
+// works out those of its spheres and cones.
+RayQuery as_embree_answers() {
+    RayQuery query;
+    query.uv = false;
+    return query;
+}
+
 // The one call for shadow rays of a light.
 void trace_shadows(const Accel& accel, const RayList& list, std::span<const Ray> rays,
                    std::span<std::uint8_t> blocked) {
@@ -32,9 +40,10 @@ void trace_shadows(const Accel& accel, const RayList& list, std::span<const Ray>
 Mode closest_batch(const Accel& accel, const RayList& list) {
     const auto answers = std::make_shared<AllAnswers>();
     return {"batch", true,
-            [&accel, list, answers](std::size_t worker, std::size_t begin, std::size_t end) {
+            [&accel, list, answers, query = as_embree_answers()](
+                std::size_t worker, std::size_t begin, std::size_t end) {
                 const std::span<Hit> hits = std::span((*answers)[worker].hits).first(end - begin);
-                accel.intersect(list.rays.subspan(begin, end - begin), hits);
+                accel.intersect(list.rays.subspan(begin, end - begin), hits, query);
                 return tally(hits);
             }};
 }
@@ -51,10 +60,12 @@ Mode any_batch(const Accel& accel, const RayList& list) {
 }
 
 Mode closest_single(const Accel& accel, const RayList& list) {
-    return {"single", true, [&accel, list](std::size_t, std::size_t begin, std::size_t end) {
+    return {"single", true,
+            [&accel, list, query = as_embree_answers()](std::size_t, std::size_t begin,
+                                                        std::size_t end) {
                 Tally sum;
                 for (std::size_t i = begin; i < end; ++i) {
-                    const auto hit = accel.intersect(list.rays[i]);
+                    const auto hit = accel.intersect(list.rays[i], query);
                     if (hit) sum += {1, static_cast<double>(hit->t)};
                 }
                 return sum;
