@@ -7,6 +7,8 @@
 #define HWY_TARGET_INCLUDE "tracer/accel/same_corners.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.
+#include "tracer/accel/simd/packing-inl.h"
+
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -84,8 +86,9 @@ HWY_INLINE void write_along(const std::array<std::uint32_t, 32>& along, std::uin
         const std::uint32_t lanes = firsts >> v & ((1u << hn::Lanes(d)) - 1u);
         std::array<std::uint8_t, 8> bits{};
         std::memcpy(bits.data(), &lanes, sizeof lanes);
-        hn::StoreU(hn::CompressBits(hn::Load(d, &along[v]), bits.data()), d, out);
-        out += std::popcount(lanes);
+        const Packing<Tag> chosen(hn::LoadMaskBits(d, bits.data()));
+        hn::StoreU(chosen.of(hn::Load(d, &along[v])), d, out);
+        out += chosen.count();
     }
 }
 

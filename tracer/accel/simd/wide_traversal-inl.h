@@ -6,6 +6,7 @@
 #define RAYPICK_WIDE_TRAVERSAL_INL_H
 #endif
 
+#include "tracer/accel/simd/packing-inl.h"
 #include "tracer/bvh/wide_bvh.h"
 
 #include <glm/vec3.hpp>
@@ -149,10 +150,10 @@ private:
         const BoxFloats far{_mm256_permutevar8x32_ps(met.far.raw, order.raw)};
         const hn::Vec<decltype(du)> child{
             _mm256_permutevar8x32_epi32(hn::Load(du, node.child.data()).raw, order.raw)};
-        const auto mask = hn::Le(near, far);
-        hn::StoreU(hn::Compress(near, mask), d, stack.enter + stack.count);
-        hn::StoreU(hn::Compress(child, hn::RebindMask(du, mask)), du, stack.ref + stack.count);
-        stack.count += hn::CountTrue(d, mask);
+        const Packing<Boxes> met_ones(hn::Le(near, far));
+        hn::StoreU(met_ones.of(near), d, stack.enter + stack.count);
+        hn::StoreU(met_ones.of(child), du, stack.ref + stack.count);
+        stack.count += met_ones.count();
     }
 #endif
 
