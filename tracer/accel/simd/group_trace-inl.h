@@ -16,6 +16,7 @@
 #include "tracer/accel/simd/group_triangles-inl.h"
 #include "tracer/accel/simd/interleaved-inl.h"
 #include "tracer/accel/simd/open_elements-inl.h"
+#include "tracer/accel/simd/ray_patches-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
 
 #include <cstddef>
@@ -299,11 +300,52 @@ private:
         std::uint32_t left = 0;
         for (std::size_t i = 0; i < patch.triangles; i += kTrianglesAtOnce)
             left |= set_triangles(space, patch, i, triangles) << i;
+        if (!space.one_origin && !space.course.backwards() && better_ray_by_ray(patch, mask)) {
+            judge_ray_by_ray(searched, space, triangles, patch, mask);
+            return;
+        }
         left &= (1u << patch.triangles) - 1u;
         for (; left != 0; left &= left - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(left));
             judge_all(searched.object, space, searched.shown, GroupTriangle{triangles, patch, i},
                       patch.primitives()[i], mask);
+        }
+    }
+
+    void judge_ray_by_ray(const Searched& searched, const GroupSpace& space,
+                          const GroupTriangles& triangles, const TrianglePatch& patch,
+                          RayMask mask) {
+        std::array<std::uint32_t, TrianglePatch::kMostTriangles> places;
+        places.fill(ClosestOfGroup::kMostCandidates);
+        std::array<RayMask, TrianglePatch::kMostTriangles> open{};
+        const Instance& instance = state_.instances[searched.object];
+        PatchVerdict verdict;
+        each_ray(mask, [&](std::size_t ray) HWY_ATTR {
+            judge_patch_of_ray(space.rays, search_.limits, ray, triangles, patch.triangles,
+                               searched.shown, verdict);
+            if (verdict.may == 0) return;
+            const std::uint32_t sure = instance.holes ? 0u : verdict.sure;
+            if constexpr (std::is_same_v<Group, AnyOfGroup>) {
+                if (sure != 0) {
+                    search_.block(RayMask{1} << ray);
+                    return;
+                }
+            }
+            each_bit(verdict.may & ~sure, [&](std::size_t i) { open[i] |= RayMask{1} << ray; });
+            if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
+                each_bit(sure, [&](std::size_t i) HWY_ATTR {
+                    const GroupTriangle triangle{triangles, patch, i};
+                    Taken<GroupTriangle> taken{triangle, instance, searched.object,
+                                               patch.primitives()[i], places[i]};
+                    take_one(search_, ray, verdict.from[i], verdict.to[i], taken);
+                    places[i] = taken.place;
+                });
+            }
+        });
+        for (std::size_t i = 0; i < patch.triangles; ++i) {
+            if (open[i] == 0) continue;
+            settle_open(space, instance, searched.object, GroupTriangle{triangles, patch, i},
+                        patch.primitives()[i], open[i]);
         }
     }
 
@@ -349,27 +391,35 @@ private:
             search_.block(sure << ray);
             open = (verdict.may & bits & ~sure) << ray;
         }
-        if (open == 0) return;
+        if (open != 0) {
+            settle_open(space, taken.instance, taken.object, taken.shape, taken.primitive, open);
+        }
+    }
+
+    // The bounds leave open whether the mask's rays hit.
+    template <typename Shape>
+    void settle_open(const GroupSpace& space, const Instance& instance, std::uint32_t object,
+                     const Shape& shape, std::uint32_t primitive, RayMask mask) {
         if constexpr (std::is_same_v<Shape, GroupTriangle>) {
-            if (!taken.instance.holes) {
-                decide_open(space, taken.object, taken.shape, taken.primitive, open);
+            if (!instance.holes) {
+                decide_open(space, object, shape, primitive, mask);
                 return;
             }
-        } else if (!taken.instance.holes) {
-            auto& later = open_like(taken.shape);
-            each_ray(open, [&](std::size_t i) HWY_ATTR {
-                later.add({i, taken.object, taken.primitive});
+        } else if (!instance.holes) {
+            auto& later = open_like(shape);
+            each_ray(mask, [&](std::size_t i) HWY_ATTR {
+                later.add({i, object, primitive});
                 if (later.full()) decide_open(later);
             });
             return;
         }
         if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
-            each_ray(open, [&](std::size_t i)
-                               HWY_ATTR { search_.add_rival(i, taken.object, taken.primitive); });
+            each_ray(mask,
+                     [&](std::size_t i) HWY_ATTR { search_.add_rival(i, object, primitive); });
         } else {
-            each_ray(open, [&](std::size_t i) HWY_ATTR {
+            each_ray(mask, [&](std::size_t i) HWY_ATTR {
                 AnyOfOne one{search_, i};
-                trace_primitive(state_, taken.object, taken.primitive, rays_[i], query_, one);
+                trace_primitive(state_, object, primitive, rays_[i], query_, one);
             });
         }
     }

@@ -11,6 +11,7 @@
 #include "tracer/accel/simd/group_search-inl.h"
 #include "tracer/accel/simd/ray_group-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
+#include "tracer/accel/simd/triangle_bounds-inl.h"
 #include "tracer/scene/scene.h"
 
 #include <glm/common.hpp>
@@ -174,12 +175,6 @@ inline void keep(const GroupTriangle& triangle, const Instance& instance, Candid
 template <typename Shape>
 void keep(const Shape& /*shape*/, const Instance& /*instance*/, Candidate& /*candidate*/) {}
 
-struct EdgeFunctions {
-    RayFloats u, v, w;
-    RayFloats slope;   // n . d
-    RayFloats height;  // n . (a - o)
-};
-
 HWY_INLINE RayFloats dot(const GroupTriangles::Vectors& constant, std::size_t i, const RayFloats& x,
                          const RayFloats& y, const RayFloats& z) {
     const Rays d;
@@ -188,15 +183,15 @@ HWY_INLINE RayFloats dot(const GroupTriangles::Vectors& constant, std::size_t i,
         hn::MulAdd(hn::Set(d, constant[1][i]), y, hn::Mul(hn::Set(d, constant[2][i]), z)));
 }
 
-HWY_INLINE EdgeFunctions edge_functions(const GroupSpace& space, const GroupTriangle& triangle,
-                                        std::size_t ray) {
+HWY_INLINE EdgeFunctions<RayFloats> edge_functions(const GroupSpace& space,
+                                                   const GroupTriangle& triangle, std::size_t ray) {
     const Rays d;
     const GroupTriangles& all = triangle.all;
     const std::size_t i = triangle.i;
     const auto dx = hn::Load(d, space.rays.direction[0].data() + ray);
     const auto dy = hn::Load(d, space.rays.direction[1].data() + ray);
     const auto dz = hn::Load(d, space.rays.direction[2].data() + ray);
-    EdgeFunctions f;
+    EdgeFunctions<RayFloats> f;
     f.slope = dot(all.n, i, dx, dy, dz);
     if (space.one_origin) {
         f.u = dot(all.u, i, dx, dy, dz);
@@ -218,15 +213,8 @@ HWY_INLINE EdgeFunctions edge_functions(const GroupSpace& space, const GroupTria
     return f;
 }
 
-// n . (a - o) of the rays as they are, signed as the slope is, and its error: near a ray's own
-// origin it is most exact.
-struct Height {
-    RayFloats value;
-    RayFloats error;
-};
-
-HWY_INLINE Height height_above(const GroupSpace& space, const GroupTriangle& triangle,
-                               const EdgeFunctions& f, std::size_t ray) {
+HWY_INLINE Height<RayFloats> height_above(const GroupSpace& space, const GroupTriangle& triangle,
+                                          const EdgeFunctions<RayFloats>& f, std::size_t ray) {
     const Rays d;
     const GroupTriangles& all = triangle.all;
     const std::size_t i = triangle.i;
@@ -248,51 +236,25 @@ struct Verdict {
     RayFloats to;
 };
 
-struct ShownSides {
-    bool front = true;
-    bool back = true;
-
-    [[nodiscard]] bool any() const { return front || back; }
-};
-
 HWY_INLINE Verdict judge(const GroupSpace& space, const GroupLimits& limits,
                          const GroupTriangle& triangle, const ShownSides& shown, std::size_t ray) {
     const Rays d;
-    const EdgeFunctions f = edge_functions(space, triangle, ray);
-    const auto least = hn::Min(hn::Min(f.u, f.v), f.w);
-    const auto most = hn::Max(hn::Max(f.u, f.v), f.w);
-    const auto error = hn::Set(d, triangle.all.edge_error[triangle.i]);
-    const auto no = hn::Gt(least, hn::Set(d, std::numeric_limits<float>::infinity()));
-    // Arranged so that a NaN rules nothing out. A ray that meets the front goes against n.
-    auto missed = hn::Or(no, hn::And(hn::Lt(least, hn::Neg(error)), hn::Gt(most, error)));
-    if (!shown.front) missed = hn::Lt(least, hn::Neg(error));
-    if (!shown.back) missed = hn::Gt(most, error);
+    const EdgeFunctions<RayFloats> f = edge_functions(space, triangle, ray);
+    const GroupTriangles& all = triangle.all;
+    const EdgeBounded<Rays> edges(f, hn::Set(d, all.edge_error[triangle.i]));
     Verdict verdict;
-    constexpr RayMask kAll = (RayMask{1} << hn::MaxLanes(Rays())) - 1;
-    verdict.may = ~ray_bits(missed) & kAll;
+    verdict.may = ~ray_bits(edges.misses(shown)) & kAllAtOnce;
     if (verdict.may == 0) return verdict;
-    const auto slope = hn::Abs(f.slope);
-    const auto slope_error = hn::Set(d, triangle.all.slope_error[triangle.i]);
-    const auto [above, height_error] = height_above(space, triangle, f, ray);
-    const auto height = hn::Xor(above, hn::And(f.slope, hn::SignBit(d)));
+    const PlaneBounded<Rays> plane(f.slope, hn::Set(d, all.slope_error[triangle.i]),
+                                   height_above(space, triangle, f, ray));
     const auto t_min = hn::Load(d, limits.t_min.data() + ray);
     const auto t_far = hn::Load(d, limits.t_far.data() + ray);
-    const auto grow = hn::Set(d, kGrowGroup);
-    const auto shrink = hn::Set(d, kShrinkGroup);
-    const auto steep = hn::Add(slope, slope_error);
-    const auto beyond = hn::Or(hn::Lt(t_far, t_min), hn::Gt(hn::Sub(height, height_error),
-                                                            hn::Mul(hn::Mul(t_far, grow), steep)));
-    const auto flat = hn::Sub(slope, slope_error);
-    const auto before =
-        hn::And(hn::Gt(flat, hn::Zero(d)),
-                hn::Lt(hn::Add(height, height_error), hn::Mul(hn::Mul(t_min, shrink), flat)));
-    verdict.may &= ~ray_bits(hn::Or(beyond, before));
+    verdict.may &= ~ray_bits(plane.misses(t_min, t_far));
     if (verdict.may == 0) return verdict;
-    verdict.from = hn::Mul(hn::Div(hn::Sub(height, height_error), steep), shrink);
-    verdict.to = hn::Mul(hn::Div(hn::Add(height, height_error), flat), grow);
-    auto sure = hn::Or(hn::Gt(least, error), hn::Lt(most, hn::Neg(error)));
-    sure = hn::And(sure, hn::Gt(slope, hn::Mul(slope_error, hn::Set(d, 8.0f))));
-    sure = hn::And(sure, hn::And(hn::Gt(verdict.from, t_min), hn::Lt(verdict.to, t_far)));
+    verdict.from = plane.from();
+    verdict.to = plane.to();
+    const auto sure =
+        hn::And(edges.surely_within(), plane.surely_within(verdict.from, verdict.to, t_min, t_far));
     verdict.sure = verdict.may & ray_bits(sure);
     return verdict;
 }
