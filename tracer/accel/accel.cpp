@@ -2,6 +2,7 @@
 
 #include "tracer/accel/accel_state.h"
 #include "tracer/accel/cut_out.h"
+#include "tracer/accel/trace_crossings.h"
 #include "tracer/accel/trace_rays.h"
 #include "tracer/error.h"
 
@@ -224,6 +225,16 @@ void Accel::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
 void Accel::occluded_towards(const glm::vec3& end, std::span<const Ray> rays,
                              std::span<std::uint8_t> blocked, const RayQuery& query) const {
     any_hits(*state_, rays, blocked, query, &end);
+}
+
+void Accel::cross(std::span<const Ray> rays, const Clearness& clear, Crossings& crossings,
+                  const RayQuery& query) const {
+    find_crossings(*state_, rays, clear, crossings, query, nullptr);
+}
+
+void Accel::cross_towards(const glm::vec3& end, std::span<const Ray> rays, const Clearness& clear,
+                          Crossings& crossings, const RayQuery& query) const {
+    find_crossings(*state_, rays, clear, crossings, query, &end);
 }
 
 const Scene& Accel::scene() const {

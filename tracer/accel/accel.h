@@ -1,6 +1,7 @@
 // The compiled, immutable form of a scene that rays run on.
 #pragma once
 
+#include "tracer/accel/crossings.h"
 #include "tracer/accel/hit.h"
 #include "tracer/geometry/ray.h"
 #include "tracer/scene/scene.h"
@@ -70,6 +71,12 @@ public:
     // point light do. Others get their answers as well.
     void occluded_towards(const glm::vec3& end, std::span<const Ray> rays,
                           std::span<std::uint8_t> blocked, const RayQuery& query = {}) const;
+    // What the rays cross of everything that is clear, as far as nothing else blocks them. `clear`
+    // is of this scene. The second is faster for rays that end at a point, see above.
+    void cross(std::span<const Ray> rays, const Clearness& clear, Crossings& crossings,
+               const RayQuery& query = {}) const;
+    void cross_towards(const glm::vec3& end, std::span<const Ray> rays, const Clearness& clear,
+                       Crossings& crossings, const RayQuery& query = {}) const;
 
     [[nodiscard]] const Scene& scene() const;
     [[nodiscard]] std::shared_ptr<const Scene> shared_scene() const;

@@ -17,16 +17,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
 
-namespace {
-
-// What lies behind a ray's origin is not on it.
-Ray from_origin(Ray ray) {
-    if (ray.t_min < 0.0f) ray.t_min = 0.0f;
-    return ray;
-}
-
-}  // namespace
-
 std::optional<Hit> closest_hit(const AccelState& state, const Ray& any_ray, const RayQuery& query) {
     const Ray ray = from_origin(any_ray);
     ClosestSearch closest(ray.t_max);
@@ -51,26 +41,6 @@ std::vector<Hit> all_hits(const AccelState& state, const Ray& ray, const RayQuer
 }
 
 namespace {
-
-// So many rays hide what each of them waits for.
-constexpr std::size_t kInterleaved = 6;
-
-// Takes the lowest ray out of the mask.
-std::size_t take_ray(RayMask& mask) {
-    const auto ray = static_cast<std::size_t>(std::countr_zero(mask));
-    mask &= mask - 1;
-    return ray;
-}
-
-template <typename Search>
-void trace_unbounded(const AccelState& state, const Ray& any_ray, const RayQuery& query,
-                     Search& search) {
-    if (state.unbounded.empty()) return;
-    const Ray ray = from_origin(any_ray);
-    for (const std::uint32_t object : state.unbounded) {
-        if (trace_simple(state, object, ray, query, search)) return;
-    }
-}
 
 // The mask's rays are usable.
 void closest_one_by_one(const AccelState& state, RayMask mask, std::span<const Ray> rays,

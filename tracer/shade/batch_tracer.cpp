@@ -286,27 +286,35 @@ void BatchTracer::find_shares(const Step& step, const PreparedLight& light) {
     const ShadeScene& scene = step.job.scene;
     const std::span<const Ray> rays = std::span(shadow_rays_).first(shadow_count_);
     count_shadows(step.job.counts, rays.size(), step.depth);
+    if (scene.tints_shadows()) {
+        tint_shares(step, light, rays);
+        return;
+    }
     blocked_.resize(rays.size());
     if (light.is_a_point()) {
         scene.accel->occluded_towards(glm::vec3(light.position), rays, blocked_);
     } else {
         scene.accel->occluded(rays, blocked_);
     }
-    if (scene.settings.glass_shadows == GlassShadows::tinted && scene.sees_through) {
-        tint_shares(step, rays);
-    }
 }
 
-// Light goes through glass: of the rays that meet anything, what is left by it.
-void BatchTracer::tint_shares(const Step& step, std::span<const Ray> rays) {
+// Light goes through glass: of the rays that nothing else blocks, what is left by it.
+void BatchTracer::tint_shares(const Step& step, const PreparedLight& light,
+                              std::span<const Ray> rays) {
     const ShadeScene& scene = step.job.scene;
+    RayQuery query;
+    query.uv = scene.has_maps;
+    if (light.is_a_point()) {
+        scene.accel->cross_towards(glm::vec3(light.position), rays, scene.clear, crossings_, query);
+    } else {
+        scene.accel->cross(rays, scene.clear, crossings_, query);
+    }
+    blocked_ = crossings_.blocked;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (step.job.stop.stop_requested()) return;
+        if (blocked_[i] != 0) continue;
         const PathRay& path = step.at.rays[points_.ray(shadowed_[i])];
-        const Interior* interior = step.at.interior_of(path);
-        const glm::vec3 share = blocked_[i] == 0
-                                    ? free_transmittance(scene, rays[i], interior)
-                                    : transmittance(scene, rays[i], interior, path.cone.width);
+        const glm::vec3 share = transmittance_through(scene, rays[i], crossings_.of(i),
+                                                      step.at.interior_of(path), path.cone.width);
         blocked_[i] = share == glm::vec3(0.0f) ? 1 : 0;
         points_.tint(shadowed_[i], share);
     }

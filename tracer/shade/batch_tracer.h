@@ -96,7 +96,7 @@ private:
     void shine(const Step& step, std::size_t light, int sample);
     void cast_shadows(const Step& step, const PreparedLight& light);
     void find_shares(const Step& step, const PreparedLight& light);
-    void tint_shares(const Step& step, std::span<const Ray> rays);
+    void tint_shares(const Step& step, const PreparedLight& light, std::span<const Ray> rays);
 
     std::deque<Generation> generations_;  // by depth - 1
 
@@ -120,6 +120,7 @@ private:
     std::vector<std::uint32_t> shadowed_;  // the points of these
     std::size_t shadow_count_ = 0;
     std::vector<std::uint8_t> blocked_;
+    Crossings crossings_;
 };
 
 }  // namespace raypick

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <variant>
 
 namespace raypick {
@@ -70,6 +71,13 @@ KnownPart part_at(const ShadeScene& scene, const Hit& hit) {
     return known;
 }
 
+Clearness clearness_of(const ShadeScene& scene) {
+    std::vector<std::uint8_t> materials;
+    for (const PreparedMaterial& material : scene.materials)
+        materials.push_back(material.see_through ? 1 : 0);
+    return clearness(*scene.scene, std::move(materials));
+}
+
 }  // namespace
 
 ShadeScene shade_scene(const Accel& accel, std::span<const Light> lights,
@@ -92,6 +100,7 @@ ShadeScene shade_scene(const Accel& accel, std::span<const Light> lights,
         if (result.materials.back().see_through) result.sees_through = true;
     }
     result.materials.push_back(prepared(material(accel.scene(), kNoMaterial), settings));
+    if (result.tints_shadows()) result.clear = clearness_of(result);
     return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tracer/accel/accel.h"
+#include "tracer/accel/crossings.h"
 #include "tracer/accel/shape_surfaces.h"
 #include "tracer/accel/surface.h"
 #include "tracer/accel/triangle_surfaces.h"
@@ -32,11 +33,16 @@ struct ShadeScene {
     RenderSettings settings;
     std::vector<PreparedLight> lights;
     std::vector<PreparedMaterial> materials;  // by id; the last one is that of no id
+    Clearness clear;                          // see_through, where shadows are tinted
     bool has_maps = false;                    // some of the materials do
     bool has_bodies = false;                  // rays may be inside of something
     bool sees_through = false;                // some of the materials let light through
     bool draws_lots = false;                  // points on lights are random
     bool plain_sky = false;                   // the background is all that is around
+
+    [[nodiscard]] bool tints_shadows() const {
+        return settings.glass_shadows == GlassShadows::tinted && sees_through;
+    }
 };
 
 // `lights` as from effective_lights. `accel` must outlive the result.

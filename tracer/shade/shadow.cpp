@@ -1,8 +1,8 @@
 #include "tracer/shade/shadow.h"
 
-#include <algorithm>
+#include "tracer/accel/crossings.h"
+
 #include <cmath>
-#include <tuple>
 #include <vector>
 
 namespace raypick {
@@ -18,24 +18,28 @@ public:
     }
 
     void cross(const Hit& hit) {
-        const FoundHit found = find_surface(scene_, ray_, hit);
         const Scene& world = *scene_.scene;
+        const Object& object = world.objects[object_index(world, hit.object)];
+        const MaterialId id = material_id(world, object, hit.primitive);
+        const PreparedMaterial& material = prepared_material(scene_, id);
         bool there = true;
         MaterialId medium = interior_.medium(world);
-        if (found.material->fills) {
+        if (material.fills) {
             Crossing crossing;
-            cross_surface(world, interior_, body_of(*found.object, hit), found.surface.material,
-                          found.surface.front_face, crossing);
+            cross_surface(world, interior_, body_of(object, hit), id, hit.front_face, crossing);
             medium = crossing.from;
             interior_ = crossing.after;
-            there = is_there(world, crossing, found.surface.material);
+            there = is_there(world, crossing, id);
         }
         share_ *= passed(scene_, medium, hit.t - reached_);
         reached_ = hit.t;
         if (!there) return;
-        const SurfaceMaterial look =
-            textured(world, *found.material->material, found.surface, ray_.direction, width_);
-        share_ *= glm::vec3(1.0f - look.opacity) + look.opacity * look.transmit;
+        if (material.has_maps) {
+            const FoundHit found = find_surface(scene_, ray_, hit);
+            pass(textured(world, *material.material, found.surface, ray_.direction, width_));
+        } else {
+            pass(material.plain);
+        }
     }
 
     // What is left at the light.
@@ -45,6 +49,10 @@ public:
     }
 
 private:
+    void pass(const SurfaceMaterial& look) {
+        share_ *= glm::vec3(1.0f - look.opacity) + look.opacity * look.transmit;
+    }
+
     const ShadeScene& scene_;
     const Ray& ray_;
     float width_;
@@ -69,17 +77,17 @@ glm::vec3 transmittance(const ShadeScene& scene, const Ray& ray, const Interior*
     RayQuery query;
     query.accept = opaque;
     if (scene.accel->occluded(ray, query)) return glm::vec3(0.0f);
-    std::sort(crossed.begin(), crossed.end(), [](const Hit& a, const Hit& b) {
-        return std::tie(a.t, a.object, a.primitive) < std::tie(b.t, b.object, b.primitive);
-    });
+    sort_along_ray(crossed);
+    return transmittance_through(scene, ray, crossed, interior, width);
+}
+
+glm::vec3 transmittance_through(const ShadeScene& scene, const Ray& ray,
+                                std::span<const Hit> crossed, const Interior* interior,
+                                float width) {
     Passage passage(scene, ray, interior, width);
     for (const Hit& hit : crossed)
         passage.cross(hit);
     return passage.at_end();
-}
-
-glm::vec3 free_transmittance(const ShadeScene& scene, const Ray& ray, const Interior* interior) {
-    return Passage(scene, ray, interior, 0.0f).at_end();
 }
 
 }  // namespace raypick

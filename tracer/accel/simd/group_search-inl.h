@@ -150,6 +150,14 @@ inline void set_object(ClosestOfOne& one, std::uint32_t object) {
     one.object = object;
 }
 
+// True if the group takes note of the primitive for rays that may hit it, and lets them go on. Most
+// don't: see group_crossings-inl.h.
+template <typename Group>
+HWY_INLINE bool crossed(Group& /*group*/, std::uint32_t /*object*/, std::uint32_t /*primitive*/,
+                        RayMask /*rays*/) {
+    return false;
+}
+
 }  // namespace raypick::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

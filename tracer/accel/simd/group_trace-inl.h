@@ -26,7 +26,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
 
-// `Group` is ClosestOfGroup or AnyOfGroup.
+// `Group` is ClosestOfGroup, AnyOfGroup or CrossingsOfGroup.
 template <typename Group>
 class GroupTrace {
 public:
@@ -323,15 +323,21 @@ private:
         each_ray(mask, [&](std::size_t ray) HWY_ATTR {
             judge_patch_of_ray(space.rays, search_.limits, ray, triangles, patch.triangles,
                                searched.shown, verdict);
-            if (verdict.may == 0) return;
-            const std::uint32_t sure = instance.holes ? 0u : verdict.sure;
-            if constexpr (std::is_same_v<Group, AnyOfGroup>) {
+            std::uint32_t may = verdict.may;
+            each_bit(verdict.may, [&](std::size_t i) HWY_ATTR {
+                if (crossed(search_, searched.object, patch.primitives()[i], RayMask{1} << ray)) {
+                    may &= ~(1u << i);
+                }
+            });
+            if (may == 0) return;
+            const std::uint32_t sure = instance.holes ? 0u : verdict.sure & may;
+            if constexpr (!std::is_same_v<Group, ClosestOfGroup>) {
                 if (sure != 0) {
                     search_.block(RayMask{1} << ray);
                     return;
                 }
             }
-            each_bit(verdict.may & ~sure, [&](std::size_t i) { open[i] |= RayMask{1} << ray; });
+            each_bit(may & ~sure, [&](std::size_t i) { open[i] |= RayMask{1} << ray; });
             if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
                 each_bit(sure, [&](std::size_t i) HWY_ATTR {
                     const GroupTriangle triangle{triangles, patch, i};
@@ -375,7 +381,8 @@ private:
         Taken<Shape> taken{shape, state_.instances[object], object, primitive};
         each_vector(mask, [&](std::size_t ray, RayMask bits) HWY_ATTR {
             const Verdict verdict = judge_some(space, search_.limits, shape, shown, ray, bits);
-            if ((verdict.may & bits) == 0) return;
+            const RayMask may = verdict.may & bits;
+            if (may == 0 || crossed(search_, object, primitive, may << ray)) return;
             settle(space, verdict, ray, bits, taken);
         });
     }
@@ -487,7 +494,8 @@ private:
 
     // A hit that counts, if none before it does.
     HWY_INLINE void offer(std::size_t ray, std::uint32_t object, std::uint32_t primitive, float t) {
-        if constexpr (std::is_same_v<Group, AnyOfGroup>) {
+        if (crossed(search_, object, primitive, RayMask{1} << ray)) return;
+        if constexpr (!std::is_same_v<Group, ClosestOfGroup>) {
             search_.block(RayMask{1} << ray);
         } else if (t <= search_.limits.t_far[ray]) {
             search_.offer(ray, object, primitive, t);

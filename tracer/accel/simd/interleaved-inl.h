@@ -7,6 +7,7 @@
 #define RAYPICK_INTERLEAVED_INL_H
 #endif
 
+#include "tracer/accel/simd/ray_group-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
 
 #include <array>
@@ -179,6 +180,26 @@ void run_interleaved(const Begin& begin, const End& end) {
                 slots[i] = slots[--active];
             }
         }
+    }
+}
+
+// So many rays hide what each of them waits for.
+inline constexpr std::size_t kInterleaved = 6;
+
+// Takes the lowest ray out of the mask.
+inline std::size_t take_ray(RayMask& mask) {
+    const auto ray = static_cast<std::size_t>(std::countr_zero(mask));
+    mask &= mask - 1;
+    return ray;
+}
+
+template <typename Search>
+void trace_unbounded(const AccelState& state, const Ray& any_ray, const RayQuery& query,
+                     Search& search) {
+    if (state.unbounded.empty()) return;
+    const Ray ray = from_origin(any_ray);
+    for (const std::uint32_t object : state.unbounded) {
+        if (trace_simple(state, object, ray, query, search)) return;
     }
 }
 

@@ -31,6 +31,12 @@ inline float largest_of(const glm::vec3& v) {
     return std::max(std::max(a.x, a.y), a.z);
 }
 
+// What lies behind a ray's origin is not on it.
+inline Ray from_origin(Ray ray) {
+    if (ray.t_min < 0.0f) ray.t_min = 0.0f;
+    return ray;
+}
+
 // A ray in the space of a tree. `reach` is the largest coordinate of the origin and of whatever is
 // searched.
 class RayInSpace {
