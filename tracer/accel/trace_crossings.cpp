@@ -2,6 +2,7 @@
 #define HWY_TARGET_INCLUDE "tracer/accel/trace_crossings.cpp"
 #include <hwy/foreach_target.h>
 
+#include "tracer/accel/simd/crossed_elements-inl.h"
 #include "tracer/accel/simd/group_crossings-inl.h"
 #include "tracer/accel/simd/group_trace-inl.h"
 #include "tracer/accel/simd/interleaved-inl.h"
@@ -60,7 +61,7 @@ RayMask cross_chunk(const AccelState& state, std::span<const Ray> rays, const Cl
         } else {
             trace.run(chunk.world, mask);
         }
-        decide_crossed(state, search, rays, query);
+        decide_crossed({state, rays, query, search});
         blocked |= search.blocked;
     }
     if (chunk.alone != 0) {

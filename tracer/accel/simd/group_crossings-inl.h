@@ -71,18 +71,6 @@ inline CrossingsOfOne one_of(CrossingsOfGroup& group, std::size_t ray, std::uint
     return {group, ray};
 }
 
-// Decides what perhaps is crossed by rays that aren't blocked, and forgets it.
-inline void decide_crossed(const AccelState& state, CrossingsOfGroup& search,
-                           std::span<const Ray> rays, const RayQuery& query) {
-    for (const PerhapsCrossed& perhaps : search.perhaps) {
-        each_ray(perhaps.rays & ~search.blocked, [&](std::size_t ray) HWY_ATTR {
-            CrossingsOfOne one{search, ray};
-            trace_primitive(state, perhaps.object, perhaps.primitive, rays[ray], query, one);
-        });
-    }
-    search.perhaps.clear();
-}
-
 }  // namespace raypick::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
