@@ -160,6 +160,67 @@ TEST(BatchTracer, IsTheRecursiveFormInGlassOfAllKinds) {
     compare(accel_of(glassy_scene()), glassy_camera(), kSize);
 }
 
+// Sets and meshes of several looks through one another, whose shadows are tinted by one, blocked by
+// the next, full of holes, in patterns, and twice as dark where two are in one place.
+Scene stained_scene() {
+    Scene scene;
+    const TextureId squares = add_texture(
+        scene, {"squares", Checker{{0.9f, 0.3f, 0.2f, 1.0f}, {0.2f, 0.5f, 0.9f, 0.2f}}});
+    Material amber = glass_material(1.3f);
+    amber.transmit = {0.9f, 0.7f, 0.3f};
+    amber.absorption = {0.1f, 0.3f, 0.9f};
+    Material stained = glass_material(1.0f);
+    stained.thin_walled = true;
+    stained.maps[static_cast<std::size_t>(MapSlot::transmit)].texture = squares;
+    Material veil = white_material();
+    veil.alpha_mode = AlphaMode::blend;
+    veil.opacity = 0.8f;
+    veil.maps[static_cast<std::size_t>(MapSlot::opacity)].texture = squares;
+    veil.maps[static_cast<std::size_t>(MapSlot::opacity)].channel = 3;
+    Material lace = white_material();
+    lace.alpha_mode = AlphaMode::cut_out;
+    lace.maps[static_cast<std::size_t>(MapSlot::opacity)] = veil.map(MapSlot::opacity);
+    for (Material* mapped : {&stained, &veil, &lace}) {
+        for (TextureMap& map : mapped->maps)
+            map.u_row *= 4.0f;
+    }
+    const MaterialId looks[] = {add_material(scene, amber), add_material(scene, stained),
+                                add_material(scene, white_material()), add_material(scene, veil),
+                                add_material(scene, lace)};
+    Random random(3);
+    std::vector<glm::vec4> balls;
+    std::vector<glm::vec4> rods;
+    std::vector<Part> parts;
+    for (std::uint32_t i = 0; i < 45; ++i) {
+        balls.emplace_back(glm::vec3(random.point(glm::dvec3(-2, -1, -2), glm::dvec3(2, 2, 2))),
+                           0.3f);
+        const glm::dvec3 end = random.point(glm::dvec3(-2, -1, -2), glm::dvec3(2, 2, 2));
+        rods.emplace_back(glm::vec3(end), 0.1f);
+        rods.emplace_back(glm::vec3(end + random.direction()), 0.05f);
+        if (i % 9 == 0) parts.push_back({i, 9, looks[i / 9]});
+    }
+    const SetId set = add_sphere_set(scene, make_sphere_set("balls", balls, parts));
+    place(scene, SphereSetInstance{set});
+    place(scene, SphereSetInstance{set}, looks[0]);
+    place(scene, ConeSetInstance{add_cone_set(scene, make_cone_set("rods", rods, true, parts))});
+    for (std::uint64_t i = 0; i < 10; ++i) {
+        MeshData soup = soup_data(i, 12, 0.9);
+        soup.uvs.resize(soup.positions.size());
+        for (std::size_t k = 1; k < soup.uvs.size(); k += 3)
+            soup.uvs[k] = {1.0f, 1.0f};
+        place_mesh(scene, soup, looks[i % 5]);
+    }
+    place(scene, MeshInstance{1}, looks[1], translate({1, 0, 0}) * scale({1.0, -2.0, 1.0}));
+    place(scene, Rectangle{{-2, 2.5, -2}, {4, 0, 0}, {0, 0, 4}}, looks[1]);
+    place(scene, Plane{{0, 1, 0}, 1.5}, looks[2]);
+    scene.lights = glassy_scene().lights;
+    return scene;
+}
+
+TEST(BatchTracer, TintsShadowsAsTheRecursiveForm) {
+    compare(accel_of(stained_scene()), glassy_camera(), kSize);
+}
+
 TEST(BatchTracer, DoesNotMindWhatTravelsTogether) {
     const Accel accel = accel_of(glassy_scene());
     RenderSettings settings;
