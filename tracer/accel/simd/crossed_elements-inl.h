@@ -43,6 +43,12 @@ struct CrossingWork {
     }
 };
 
+struct CrossingLane {
+    std::size_t ray = 0;
+    std::uint32_t object = 0;  // index
+    std::uint32_t primitive = 0;
+};
+
 // Rays with an element each. `Set` is the objects' shape; see SoleElements for the others.
 template <typename Set, typename Pairs, typename Decided>
 class CrossedElements {
@@ -86,12 +92,6 @@ public:
     }
 
 private:
-    struct Lane {
-        std::size_t ray = 0;
-        std::uint32_t object = 0;  // index
-        std::uint32_t primitive = 0;
-    };
-
     HWY_INLINE void offer(std::size_t lane, double t, const typename Decided::Hits& hits) const {
         const Object& object = work_.state.scene->objects[lanes_[lane].object];
         work_.offer(lanes_[lane].ray, object,
@@ -102,55 +102,75 @@ private:
 
     const CrossingWork& work_;
     Pairs pairs_;
-    std::array<Lane, kDoublesAtOnce> lanes_{};
+    std::array<CrossingLane, kDoublesAtOnce> lanes_{};
     std::size_t count_ = 0;
 };
 
 using CrossedSpheres = CrossedElements<SphereSetInstance, SpherePairs, SpheresDecided>;
 using CrossedCones = CrossedElements<ConeSetInstance, ConePairs, ConesDecided>;
 
-// All rays with the one triangle; false if this isn't for it.
-inline bool cross_triangle(const CrossingWork& work, const PerhapsCrossed& perhaps) {
-    const Scene& scene = *work.state.scene;
-    const Object& object = scene.objects[perhaps.object];
-    const Instance& instance = work.state.instances[perhaps.object];
-    const auto* placed = std::get_if<MeshInstance>(&object.shape);
-    if (placed == nullptr || instance.holes) return false;
-    const Mesh& mesh = scene.meshes[placed->mesh];
-    const glm::uvec3 corner = mesh.triangles[perhaps.primitive];
-    const glm::vec3& a = mesh.positions[corner.x];
-    const glm::vec3& b = mesh.positions[corner.y];
-    const glm::vec3& c = mesh.positions[corner.z];
-    if (!has_area(a, b, c)) return true;
-    decide_rays(
-        perhaps.rays,
-        [&](std::size_t ray, TrianglePairs& pairs, std::size_t lane) HWY_ATTR {
-            set_ray(instance, work.rays[ray], lane, pairs);
-            pairs.set_corners(lane, a, b, c);
-            return true;
-        },
-        [&](std::size_t ray, const TriangleAnswers& answers, std::size_t lane) HWY_ATTR {
-            if (((answers.hit >> lane) & 1) == 0) return;
-            work.offer(ray, object,
-                       {object.id, perhaps.primitive, answers.t[lane],
-                        glm::vec2(answers.u[lane], answers.v[lane]), answers.hits_front(lane)});
+// The same of triangles.
+class CrossedTriangles {
+public:
+    explicit CrossedTriangles(const CrossingWork& work) : work_(work) {}
+
+    bool take(const PerhapsCrossed& perhaps) {
+        const Scene& scene = *work_.state.scene;
+        const Instance& instance = work_.state.instances[perhaps.object];
+        const auto* placed = std::get_if<MeshInstance>(&scene.objects[perhaps.object].shape);
+        if (placed == nullptr || instance.holes) return false;
+        const Mesh& mesh = scene.meshes[placed->mesh];
+        const glm::uvec3 corner = mesh.triangles[perhaps.primitive];
+        const glm::vec3& a = mesh.positions[corner.x];
+        const glm::vec3& b = mesh.positions[corner.y];
+        const glm::vec3& c = mesh.positions[corner.z];
+        if (!has_area(a, b, c)) return true;
+        each_ray(perhaps.rays, [&](std::size_t ray) HWY_ATTR {
+            set_ray(instance, work_.rays[ray], count_, pairs_);
+            pairs_.set_corners(count_, a, b, c);
+            lanes_[count_++] = {ray, perhaps.object, perhaps.primitive};
+            if (count_ == kDoublesAtOnce) decide();
         });
-    return true;
-}
+        return true;
+    }
+
+    void decide() {
+        if (count_ == 0) return;
+        pairs_.fill_from(count_);
+        HWY_NAMESPACE::decide(TriangleColumns(pairs_), answers_);
+        for (std::size_t lane = 0; lane < count_; ++lane) {
+            if (((answers_.hit >> lane) & 1) == 0) continue;
+            const Object& object = work_.state.scene->objects[lanes_[lane].object];
+            work_.offer(lanes_[lane].ray, object,
+                        {object.id, lanes_[lane].primitive, answers_.t[lane],
+                         glm::vec2(answers_.u[lane], answers_.v[lane]), answers_.hits_front(lane)});
+        }
+        count_ = 0;
+    }
+
+private:
+    const CrossingWork& work_;
+    TrianglePairs pairs_;
+    TriangleAnswers answers_;
+    std::array<CrossingLane, kDoublesAtOnce> lanes_{};
+    std::size_t count_ = 0;
+};
 
 // Decides what perhaps is crossed by rays that aren't blocked, and forgets it.
 inline void decide_crossed(const CrossingWork& work) {
     CrossedSpheres spheres(work);
     CrossedCones cones(work);
+    CrossedTriangles triangles(work);
     for (PerhapsCrossed& perhaps : work.search.perhaps) {
         perhaps.rays &= ~work.search.blocked;
-        if (spheres.take(perhaps) || cones.take(perhaps) || cross_triangle(work, perhaps)) continue;
+        if (spheres.take(perhaps) || cones.take(perhaps) || triangles.take(perhaps)) continue;
         each_ray(perhaps.rays, [&](std::size_t ray) HWY_ATTR {
             work.by_scalar(ray, perhaps.object, perhaps.primitive);
         });
     }
     spheres.decide();
     cones.decide();
+    triangles.decide();
     work.search.perhaps.clear();
 }
 
