@@ -313,8 +313,10 @@ void BatchTracer::tint_shares(const Step& step, const PreparedLight& light,
     for (std::size_t i = 0; i < rays.size(); ++i) {
         if (blocked_[i] != 0) continue;
         const PathRay& path = step.at.rays[points_.ray(shadowed_[i])];
-        const glm::vec3 share = transmittance_through(scene, rays[i], crossings_.of(i),
-                                                      step.at.interior_of(path), path.cone.width);
+        const Interior* interior = step.at.interior_of(path);
+        if (crossings_.of(i).empty() && interior == nullptr) continue;
+        const glm::vec3 share =
+            transmittance_through(scene, rays[i], crossings_.of(i), interior, path.cone.width);
         blocked_[i] = share == glm::vec3(0.0f) ? 1 : 0;
         points_.tint(shadowed_[i], share);
     }

@@ -23,13 +23,15 @@ public:
         const MaterialId id = material_id(world, object, hit.primitive);
         const PreparedMaterial& material = prepared_material(scene_, id);
         bool there = true;
-        MaterialId medium = interior_.medium(world);
+        MaterialId medium = kNoMaterial;
         if (material.fills) {
             Crossing crossing;
             cross_surface(world, interior_, body_of(object, hit), id, hit.front_face, crossing);
             medium = crossing.from;
             interior_ = crossing.after;
             there = is_there(world, crossing, id);
+        } else {
+            medium = interior_.medium(world);
         }
         share_ *= passed(scene_, medium, hit.t - reached_);
         reached_ = hit.t;
