@@ -12,7 +12,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <utility>
+#include <span>
+#include <tuple>
 #include <vector>
 
 namespace raypick {

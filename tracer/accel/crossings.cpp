@@ -1,6 +1,7 @@
 #include "tracer/accel/crossings.h"
 
 #include <algorithm>
+#include <span>
 #include <tuple>
 #include <utility>
 
