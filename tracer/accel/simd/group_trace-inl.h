@@ -12,11 +12,10 @@
 #include "tracer/accel/simd/group_boxes-inl.h"
 #include "tracer/accel/simd/group_cones-inl.h"
 #include "tracer/accel/simd/group_search-inl.h"
+#include "tracer/accel/simd/group_settle-inl.h"
 #include "tracer/accel/simd/group_spheres-inl.h"
 #include "tracer/accel/simd/group_triangles-inl.h"
 #include "tracer/accel/simd/interleaved-inl.h"
-#include "tracer/accel/simd/open_elements-inl.h"
-#include "tracer/accel/simd/ray_patches-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
 
 #include <cstddef>
@@ -36,8 +35,7 @@ public:
           rays_(rays),
           query_(query),
           search_(search),
-          open_spheres_(state, rays, query),
-          open_cones_(state, rays, query) {}
+          settle_(state, rays, query, search) {}
 
     // The rays of the mask, all usable, in one octant and with t_min >= 0; `world` holds them.
     void run(const GroupRays& group, RayMask mask) {
@@ -45,7 +43,7 @@ public:
             each_on_its_own({object, {}}, mask);
         if (state_.top.empty()) return;
         enter_world(GroupSpace(group, mask, 0.0f, state_.reach), mask);
-        decide_last();
+        settle_.decide_last();
     }
 
     // The same backwards.
@@ -54,7 +52,7 @@ public:
             each_on_its_own({object, {}}, mask);
         if (state_.top.empty()) return;
         enter_world(GroupSpace(back.rays, mask, 0.0f, state_.reach, back.course), mask);
-        decide_last();
+        settle_.decide_last();
     }
 
 private:
@@ -199,7 +197,7 @@ private:
         each_ray(mask & decided.ordinary & shown, [&](std::size_t lane) HWY_ATTR {
             const std::size_t ray = first + lane;
             const auto t = static_cast<float>(decided.enters_at[lane]);
-            if (t > rays_[ray].t_min && t < rays_[ray].t_max) offer(ray, index, 0, t);
+            if (t > rays_[ray].t_min && t < rays_[ray].t_max) settle_.offer(ray, index, 0, t);
         });
     }
 
@@ -274,12 +272,6 @@ private:
         return shown;
     }
 
-    // Whose a patch's triangles are, and which sides of them count.
-    struct Searched {
-        std::uint32_t object = 0;
-        ShownSides shown{false, false};
-    };
-
     // searched(patch) says what is searched.
     template <typename SearchedOf>
     HWY_INLINE void search_mesh(const TopEntry& entry, const GroupSpace& space, RayMask mask,
@@ -301,7 +293,7 @@ private:
         for (std::size_t i = 0; i < patch.triangles; i += kTrianglesAtOnce)
             left |= set_triangles(space, patch, i, triangles) << i;
         if (!space.one_origin && !space.course.backwards() && better_ray_by_ray(patch, mask)) {
-            judge_ray_by_ray(searched, space, triangles, patch, mask);
+            settle_.judge_patch(searched, space, triangles, patch, mask);
             return;
         }
         left &= (1u << patch.triangles) - 1u;
@@ -309,49 +301,6 @@ private:
             const auto i = static_cast<std::size_t>(std::countr_zero(left));
             judge_all(searched.object, space, searched.shown, GroupTriangle{triangles, patch, i},
                       patch.primitives()[i], mask);
-        }
-    }
-
-    void judge_ray_by_ray(const Searched& searched, const GroupSpace& space,
-                          const GroupTriangles& triangles, const TrianglePatch& patch,
-                          RayMask mask) {
-        std::array<std::uint32_t, TrianglePatch::kMostTriangles> places;
-        places.fill(ClosestOfGroup::kMostCandidates);
-        std::array<RayMask, TrianglePatch::kMostTriangles> open{};
-        const Instance& instance = state_.instances[searched.object];
-        PatchVerdict verdict;
-        each_ray(mask, [&](std::size_t ray) HWY_ATTR {
-            judge_patch_of_ray(space.rays, search_.limits, ray, triangles, patch.triangles,
-                               searched.shown, verdict);
-            std::uint32_t may = verdict.may;
-            each_bit(verdict.may, [&](std::size_t i) HWY_ATTR {
-                if (crossed(search_, searched.object, patch.primitives()[i], RayMask{1} << ray)) {
-                    may &= ~(1u << i);
-                }
-            });
-            if (may == 0) return;
-            const std::uint32_t sure = instance.holes ? 0u : verdict.sure & may;
-            if constexpr (!std::is_same_v<Group, ClosestOfGroup>) {
-                if (sure != 0) {
-                    search_.block(RayMask{1} << ray);
-                    return;
-                }
-            }
-            each_bit(may & ~sure, [&](std::size_t i) { open[i] |= RayMask{1} << ray; });
-            if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
-                each_bit(sure, [&](std::size_t i) HWY_ATTR {
-                    const GroupTriangle triangle{triangles, patch, i};
-                    Taken<GroupTriangle> taken{triangle, instance, searched.object,
-                                               patch.primitives()[i], places[i]};
-                    take_one(search_, ray, verdict.from[i], verdict.to[i], taken);
-                    places[i] = taken.place;
-                });
-            }
-        });
-        for (std::size_t i = 0; i < patch.triangles; ++i) {
-            if (open[i] == 0) continue;
-            settle_open(space, instance, searched.object, GroupTriangle{triangles, patch, i},
-                        patch.primitives()[i], open[i]);
         }
     }
 
@@ -383,132 +332,15 @@ private:
             const Verdict verdict = judge_some(space, search_.limits, shape, shown, ray, bits);
             const RayMask may = verdict.may & bits;
             if (may == 0 || crossed(search_, object, primitive, may << ray)) return;
-            settle(space, verdict, ray, bits, taken);
+            settle_.settle(space, verdict, ray, bits, taken);
         });
-    }
-
-    template <typename Shape>
-    HWY_NOINLINE void settle(const GroupSpace& space, const Verdict& verdict, std::size_t ray,
-                             RayMask bits, Taken<Shape>& taken) {
-        RayMask open = 0;
-        if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
-            open = take(search_, verdict, ray, bits, taken) << ray;
-        } else {
-            const RayMask sure = taken.instance.holes ? 0 : verdict.sure & bits;
-            search_.block(sure << ray);
-            open = (verdict.may & bits & ~sure) << ray;
-        }
-        if (open != 0) {
-            settle_open(space, taken.instance, taken.object, taken.shape, taken.primitive, open);
-        }
-    }
-
-    // The bounds leave open whether the mask's rays hit.
-    template <typename Shape>
-    void settle_open(const GroupSpace& space, const Instance& instance, std::uint32_t object,
-                     const Shape& shape, std::uint32_t primitive, RayMask mask) {
-        if constexpr (std::is_same_v<Shape, GroupTriangle>) {
-            if (!instance.holes) {
-                decide_open(space, object, shape, primitive, mask);
-                return;
-            }
-        } else if (!instance.holes) {
-            auto& later = open_like(shape);
-            each_ray(mask, [&](std::size_t i) HWY_ATTR {
-                later.add({i, object, primitive});
-                if (later.full()) decide_open(later);
-            });
-            return;
-        }
-        if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
-            each_ray(mask,
-                     [&](std::size_t i) HWY_ATTR { search_.add_rival(i, object, primitive); });
-        } else {
-            each_ray(mask, [&](std::size_t i) HWY_ATTR {
-                AnyOfOne one{search_, i};
-                trace_primitive(state_, object, primitive, rays_[i], query_, one);
-            });
-        }
-    }
-
-    // Rays that the bounds leave open, as all do that begin on the triangle itself.
-    void decide_open(const GroupSpace& space, std::uint32_t object, const GroupTriangle& triangle,
-                     std::uint32_t primitive, RayMask mask) {
-        TriangleCorners corners;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const glm::vec3 p = triangle.patch.position(static_cast<std::uint32_t>(triangle.i),
-                                                        static_cast<int>(k));
-            corners[k] = {p.x, p.y, p.z, 0.0f};
-        }
-        if (!has_area(glm::vec3(corners[0][0], corners[0][1], corners[0][2]),
-                      glm::vec3(corners[1][0], corners[1][1], corners[1][2]),
-                      glm::vec3(corners[2][0], corners[2][1], corners[2][2])))
-            return;
-        const Instance& instance = state_.instances[object];
-        const auto settle_one =
-            [&](std::size_t ray, const TriangleAnswers& answers, std::size_t lane)
-                HWY_ATTR { offer_open(object, primitive, ray, answers, lane); };
-        if (instance.identity) {
-            decide_alike(space.course.backwards() ? *space.course.forward : space.rays, mask,
-                         corners, settle_one);
-            return;
-        }
-        decide_rays(
-            mask,
-            [&](std::size_t ray, TrianglePairs& pairs, std::size_t lane) HWY_ATTR {
-                pairs.set_ray(lane, object_ray(instance, rays_[ray]));
-                for (std::size_t k = 0; k < 3; ++k)
-                    pairs.corners[k][lane] = corners[k];
-                return true;
-            },
-            settle_one);
-    }
-
-    OpenSpheres& open_like(const GroupSphere& /*shape*/) { return open_spheres_; }
-    OpenCones& open_like(const GroupCone& /*shape*/) { return open_cones_; }
-
-    template <typename Elements>
-    HWY_NOINLINE void decide_open(Elements& elements) {
-        elements.decide([&](const OpenElement& open, float t)
-                            HWY_ATTR { offer(open.ray, open.object, open.primitive, t); },
-                        [&](const OpenElement& open) HWY_ATTR {
-                            auto one = one_of(search_, open.ray, open.object);
-                            trace_primitive(state_, open.object, open.primitive, rays_[open.ray],
-                                            query_, one);
-                        });
-    }
-
-    void decide_last() {
-        if (!open_spheres_.empty()) decide_open(open_spheres_);
-        if (!open_cones_.empty()) decide_open(open_cones_);
-    }
-
-    HWY_INLINE void offer_open(std::uint32_t index, std::uint32_t primitive, std::size_t ray,
-                               const TriangleAnswers& answers, std::size_t lane) {
-        if (!answers.hits(lane, rays_[ray].t_min, rays_[ray].t_max)) return;
-        const bool front = answers.hits_front(lane);
-        const Object& object = state_.scene->objects[index];
-        if (!shows(object.sides, front) || !shows(query_.sides, front)) return;
-        offer(ray, index, primitive, answers.t[lane]);
-    }
-
-    // A hit that counts, if none before it does.
-    HWY_INLINE void offer(std::size_t ray, std::uint32_t object, std::uint32_t primitive, float t) {
-        if (crossed(search_, object, primitive, RayMask{1} << ray)) return;
-        if constexpr (!std::is_same_v<Group, ClosestOfGroup>) {
-            search_.block(RayMask{1} << ray);
-        } else if (t <= search_.limits.t_far[ray]) {
-            search_.offer(ray, object, primitive, t);
-        }
     }
 
     const AccelState& state_;
     std::span<const Ray> rays_;
     const RayQuery& query_;
     Group& search_;
-    // Nothing is left of them at the end.
-    OpenSpheres open_spheres_;
-    OpenCones open_cones_;
+    GroupSettle<Group> settle_;
 };
 
 }  // namespace raypick::HWY_NAMESPACE
