@@ -11,6 +11,7 @@
 #include "tracer/accel/simd/group_boxes-inl.h"
 #include "tracer/accel/simd/ray_group-inl.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -23,9 +24,13 @@ namespace raypick::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // Fewer rays than that go one by one: in meshes they then hide each other's waiting (see
-// Traversal), elsewhere a group is better as soon as it isn't given up at once.
-inline int fewest_in_group(const AccelState& state) {
-    return state.mostly_triangles ? 12 : kFewRays + 1;
+// Traversal), elsewhere a group is better as soon as it isn't given up at once. Rays that go all
+// ways seldom have more in common than their octant.
+inline int fewest_in_group(const AccelState& state, const std::array<RayMask, 8>& octants) {
+    if (!state.mostly_triangles) return kFewRays + 1;
+    const auto ways =
+        std::count_if(octants.begin(), octants.end(), [](RayMask group) { return group != 0; });
+    return ways > 6 ? 24 : 12;
 }
 
 // Rays as they come, and which of them can go in groups.
@@ -55,7 +60,7 @@ struct Chunk {
                  [&](std::size_t i) HWY_ATTR { alone |= RayMask{usable(rays[i]) ? 1u : 0u} << i; });
         world.invert();
         octants = world.octants(groupable);
-        const int fewest = fewest_in_group(state);
+        const int fewest = fewest_in_group(state, octants);
         for (RayMask& group : octants) {
             if (std::popcount(group) >= fewest) continue;
             alone |= group;
