@@ -25,7 +25,7 @@ Taps taps_along(float longer, float shorter, float least) {
     Taps taps;
     taps.width = std::max(std::max(shorter, longer / static_cast<float>(kMaxTaps)), least);
     if (!(taps.width < kLargestCoordinate)) return {1, kLargestCoordinate};
-    if (taps.width > 0.0f) {
+    if (taps.width > 0.0f && longer > taps.width) {
         taps.count = std::clamp(static_cast<int>(std::ceil(longer / taps.width)), 1, kMaxTaps);
     }
     return taps;
@@ -38,6 +38,22 @@ float tap_offset(int i, int n) {
 
 // --- Images -------------------------------------------------------------------------------------
 
+// Four channels, in the compiler's own vector type.
+using Channels = float __attribute__((vector_size(16)));
+
+Channels all(float x) {
+    return Channels{x, x, x, x};
+}
+Channels mix(Channels x, Channels y, float share) {
+    return x * all(1.0f - share) + y * all(share);
+}
+
+// std::floor of what an int can hold, which is a call where processors need not have it.
+int floor_of(float x) {
+    const int whole = static_cast<int>(x);
+    return x < static_cast<float>(whole) ? whole - 1 : whole;
+}
+
 // Coordinate to [0, 1], or [0, 2] for mirrored images, whose second half is turned round.
 float wrapped(float x, Wrap wrap) {
     if (!(std::abs(x) < kLargestCoordinate)) return 0.0f;
@@ -45,11 +61,11 @@ float wrapped(float x, Wrap wrap) {
         case Wrap::clamp:
             return std::clamp(x, 0.0f, 1.0f);
         case Wrap::mirror:
-            return x - 2.0f * std::floor(0.5f * x);
+            return x - 2.0f * static_cast<float>(floor_of(0.5f * x));
         case Wrap::repeat:
             break;
     }
-    return x - std::floor(x);
+    return x - static_cast<float>(floor_of(x));
 }
 
 // i in [-n, 2n) to [0, n). A division would take longer than all else that finds a texel.
@@ -73,87 +89,126 @@ int wrapped(int i, int n, Wrap wrap) {
     return in_period(i, n);
 }
 
-class ImageSampler {
-public:
-    ImageSampler(const TexturePixels& pixels, const TextureMap& map)
-        : pixels_(pixels), map_(map), values_(texel_values(pixels.coding)) {}
+// What the bytes of a linear image mean, and of alpha in any.
+constexpr std::array<float, 256> kLinearValues = [] {
+    std::array<float, 256> values{};
+    for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = static_cast<float>(i) * (1.0f / 255.0f);
+    return values;
+}();
 
-    // Averages around t over the parallelogram of the axes a and b (texture coordinates).
-    [[nodiscard]] glm::vec4 average(const glm::vec2& t, glm::vec2 a, glm::vec2 b) const {
-        const TextureLevel& base = pixels_.levels.front();
-        const glm::vec2 size(base.cols, base.rows);
-        float longer = glm::length(a * size);
-        float shorter = glm::length(b * size);
-        if (shorter > longer) {
-            std::swap(longer, shorter);
-            std::swap(a, b);
-        }
-        const Taps taps = taps_along(longer, shorter, 1.0f);
-        const float level = std::min(std::log2(taps.width), static_cast<float>(last_level()));
-        if (taps.count == 1) return at_level(t, level);
-        glm::vec4 sum(0.0f);
-        for (int i = 0; i < taps.count; ++i)
-            sum += at_level(t + tap_offset(i, taps.count) * a, level);
-        return sum / static_cast<float>(taps.count);
+// Looks values of one image of a mip chain up, at coordinates that are wrapped() already; row 0 is
+// on top, where v is 1.
+class LevelSampler {
+public:
+    LevelSampler(const TexturePixels& pixels, int number, const TextureMap& map)
+        : LevelSampler(pixels, pixels.levels[static_cast<std::size_t>(number)], map) {}
+
+    [[nodiscard]] Channels nearest(const glm::vec2& t) const {
+        return value(row_of(floor_of((1.0f - t.y) * rows_)), col_of(floor_of(t.x * cols_)));
+    }
+
+    [[nodiscard]] Channels bilinear(const glm::vec2& t) const {
+        const float x = t.x * cols_ - 0.5f;
+        const float y = (1.0f - t.y) * rows_ - 0.5f;
+        const int left = floor_of(x);
+        const int top = floor_of(y);
+        const float right = x - static_cast<float>(left);
+        const std::size_t col = col_of(left);
+        const std::size_t next_col = col_of(left + 1);
+        const std::size_t row = row_of(top);
+        const std::size_t next_row = row_of(top + 1);
+        return mix(mix(value(row, col), value(row, next_col), right),
+                   mix(value(next_row, col), value(next_row, next_col), right),
+                   y - static_cast<float>(top));
     }
 
 private:
-    [[nodiscard]] int last_level() const { return static_cast<int>(pixels_.levels.size()) - 1; }
+    LevelSampler(const TexturePixels& pixels, const TextureLevel& level, const TextureMap& map)
+        : level_(level),
+          texels_(&pixels.texels[level.first]),
+          rows_(static_cast<float>(level.rows)),
+          cols_(static_cast<float>(level.cols)),
+          wrap_u_(map.wrap_u),
+          wrap_v_(map.wrap_v),
+          colour_(pixels.coding == TexelCoding::linear ? kLinearValues
+                                                       : texel_values(pixels.coding)) {}
+
+    // A texel's place is that of its row plus that of its column. Mirrored v is turned round by
+    // wrapped(): rows count from v = 1 downwards there.
+    [[nodiscard]] std::size_t row_of(int row) const {
+        return static_cast<std::size_t>(wrapped(row, level_.rows, wrap_v_)) *
+               static_cast<std::size_t>(level_.cols);
+    }
+    [[nodiscard]] std::size_t col_of(int col) const {
+        return static_cast<std::size_t>(wrapped(col, level_.cols, wrap_u_));
+    }
+    [[nodiscard]] Channels value(std::size_t row, std::size_t col) const {
+        const glm::u8vec4& c = texels_[row + col];
+        return Channels{colour_[c.x], colour_[c.y], colour_[c.z], kLinearValues[c.w]};
+    }
+
+    const TextureLevel& level_;
+    const glm::u8vec4* texels_;
+    float rows_;
+    float cols_;
+    Wrap wrap_u_;
+    Wrap wrap_v_;
+    const std::array<float, 256>& colour_;
+};
+
+// Looks values of an image up at one level of detail, between two images of its mip chain.
+class MipSampler {
+public:
+    MipSampler(const TexturePixels& pixels, const TextureMap& map, float level)
+        : map_(map),
+          fraction_(level - std::floor(level)),
+          nearest_(level == 0.0f && map.filter == TextureFilter::nearest),
+          finer_(pixels, static_cast<int>(level), map),
+          coarser_(pixels, static_cast<int>(level) + (fraction_ == 0.0f ? 0 : 1), map) {}
 
     // Trilinear. The filter `nearest` is for texels larger than pixels: smaller ones are averaged.
-    [[nodiscard]] glm::vec4 at_level(const glm::vec2& t, float level) const {
-        const int finer = static_cast<int>(level);
-        const float fraction = level - static_cast<float>(finer);
-        if (level == 0.0f && map_.filter == TextureFilter::nearest) return nearest(t);
-        const glm::vec4 colour = bilinear(t, finer);
-        if (fraction == 0.0f) return colour;
-        return glm::mix(colour, bilinear(t, finer + 1), fraction);
+    [[nodiscard]] Channels at(const glm::vec2& t) const {
+        const glm::vec2 inside(wrapped(t.x, map_.wrap_u), wrapped(t.y, map_.wrap_v));
+        if (nearest_) return finer_.nearest(inside);
+        const Channels colour = finer_.bilinear(inside);
+        if (fraction_ == 0.0f) return colour;
+        return mix(colour, coarser_.bilinear(inside), fraction_);
     }
 
-    [[nodiscard]] glm::vec4 nearest(const glm::vec2& t) const {
-        const TextureLevel& level = pixels_.levels.front();
-        const float x = wrapped(t.x, map_.wrap_u) * static_cast<float>(level.cols);
-        const float y = (1.0f - wrapped(t.y, map_.wrap_v)) * static_cast<float>(level.rows);
-        return value(row_of(level, static_cast<int>(std::floor(
-                                       y)))[col_of(level, static_cast<int>(std::floor(x)))]);
-    }
-
-    [[nodiscard]] glm::vec4 bilinear(const glm::vec2& t, int number) const {
-        const TextureLevel& level = pixels_.levels[static_cast<std::size_t>(number)];
-        // Row 0 is on top, where v is 1.
-        const float x = wrapped(t.x, map_.wrap_u) * static_cast<float>(level.cols) - 0.5f;
-        const float y = (1.0f - wrapped(t.y, map_.wrap_v)) * static_cast<float>(level.rows) - 0.5f;
-        const float left = std::floor(x);
-        const float top = std::floor(y);
-        const float right = x - left;
-        const std::size_t col = col_of(level, static_cast<int>(left));
-        const std::size_t next_col = col_of(level, static_cast<int>(left) + 1);
-        const glm::u8vec4* row = row_of(level, static_cast<int>(top));
-        const glm::u8vec4* next_row = row_of(level, static_cast<int>(top) + 1);
-        return glm::mix(glm::mix(value(row[col]), value(row[next_col]), right),
-                        glm::mix(value(next_row[col]), value(next_row[next_col]), right), y - top);
-    }
-
-    // Mirrored v is turned round by wrapped(): rows count from v = 1 downwards there.
-    [[nodiscard]] const glm::u8vec4* row_of(const TextureLevel& level, int row) const {
-        return &pixels_.texels[level.first] +
-               static_cast<std::size_t>(wrapped(row, level.rows, map_.wrap_v)) *
-                   static_cast<std::size_t>(level.cols);
-    }
-    [[nodiscard]] std::size_t col_of(const TextureLevel& level, int col) const {
-        return static_cast<std::size_t>(wrapped(col, level.cols, map_.wrap_u));
-    }
-
-    [[nodiscard]] glm::vec4 value(const glm::u8vec4& c) const {
-        if (pixels_.coding == TexelCoding::linear) return glm::vec4(c) * (1.0f / 255.0f);
-        return {values_[c.x], values_[c.y], values_[c.z],
-                static_cast<float>(c.w) * (1.0f / 255.0f)};
-    }
-
-    const TexturePixels& pixels_;
+private:
     const TextureMap& map_;
-    const std::array<float, 256>& values_;
+    float fraction_;
+    bool nearest_;
+    LevelSampler finer_;
+    LevelSampler coarser_;
 };
+
+// The level of detail of samples this many texels of the finest image wide, at least 1.
+float level_of(const TexturePixels& pixels, float width) {
+    if (width == 1.0f) return 0.0f;
+    return std::min(std::log2(width), static_cast<float>(pixels.levels.size() - 1));
+}
+
+// Averages around t over the parallelogram of the axes a and b (texture coordinates).
+Channels average(const TexturePixels& pixels, const TextureMap& map, const glm::vec2& t,
+                 glm::vec2 a, glm::vec2 b) {
+    const TextureLevel& base = pixels.levels.front();
+    const glm::vec2 size(base.cols, base.rows);
+    float longer = glm::length(a * size);
+    float shorter = glm::length(b * size);
+    if (shorter > longer) {
+        std::swap(longer, shorter);
+        std::swap(a, b);
+    }
+    const Taps taps = taps_along(longer, shorter, 1.0f);
+    const MipSampler sampler(pixels, map, level_of(pixels, taps.width));
+    if (taps.count == 1) return sampler.at(t);
+    Channels sum = all(0.0f);
+    for (int i = 0; i < taps.count; ++i)
+        sum += sampler.at(t + tap_offset(i, taps.count) * a);
+    return sum / all(static_cast<float>(taps.count));
+}
 
 // --- Checker ------------------------------------------------------------------------------------
 
@@ -211,7 +266,8 @@ glm::vec4 sample(const Texture& texture, const TextureMap& map, const glm::vec2&
         texel = glm::mix(checker->odd, checker->even, even_share(t, a, b));
     } else {
         const auto& image = std::get<ImageTexture>(texture.source);
-        texel = ImageSampler(*image.pixels, map).average(t, a, b);
+        const Channels channels = average(*image.pixels, map, t, a, b);
+        texel = {channels[0], channels[1], channels[2], channels[3]};
     }
     return glm::vec4(map.base) + map.gain * texel;
 }
