@@ -2,6 +2,7 @@
 
 #include "tracer/accel/hit.h"
 #include "tracer/error.h"
+#include "tracer/parallel/parallel.h"
 #include "tracer/render/image_files.h"
 #include "tracer/render/large_pages.h"
 #include "tracer/temporary_file.h"
@@ -24,15 +25,31 @@ std::string lower_extension(const std::filesystem::path& file) {
 
 }  // namespace
 
-Image make_image(ImageSize size) {
+Image make_image(ImageSize size, int threads) {
     const std::size_t count = size.pixel_count();
     Image image;
     image.size = size;
-    fill_large(image.colour, count, glm::vec3(0.0f));
-    fill_large(image.depth, count, std::numeric_limits<float>::infinity());
-    fill_large(image.normal, count, glm::vec3(0.0f));
-    fill_large(image.object, count, kNoObject);
-    fill_large(image.primitive, count, 0xffffffffu);
+    const auto fill = [&](std::size_t channel) {
+        switch (channel) {  // the largest first
+            case 0:
+                return fill_large(image.colour, count, glm::vec3(0.0f));
+            case 1:
+                return fill_large(image.normal, count, glm::vec3(0.0f));
+            case 2:
+                return fill_large(image.depth, count, std::numeric_limits<float>::infinity());
+            case 3:
+                return fill_large(image.object, count, kNoObject);
+            default:
+                return fill_large(image.primitive, count, 0xffffffffu);
+        }
+    };
+    constexpr std::size_t kChannels = 5;
+    if (threads == 1) {
+        for (std::size_t channel = 0; channel < kChannels; ++channel)
+            fill(channel);
+    } else {
+        parallel_for(kChannels, threads, {}, fill);
+    }
     return image;
 }
 

@@ -23,8 +23,9 @@ struct Image {
     std::vector<std::uint32_t> primitive;
 };
 
-// All background, black.
-Image make_image(ImageSize size);
+// All background, black. Touching the memory of a large image for the first time takes long: up to
+// `threads` threads (0: all cores) do it.
+Image make_image(ImageSize size, int threads = 1);
 
 // IEC 61966-2-1 transfer curve, and the byte that a PNG or the screen shows (NaN becomes 0).
 float srgb_from_linear(float linear);

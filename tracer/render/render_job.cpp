@@ -189,7 +189,7 @@ void RenderJob::State::show_coarse(const RayCounts& counts) {
 // Not before the coarse image is shown: nobody waits for this one so soon.
 void RenderJob::State::begin_image() {
     const ImageSize size = tracer.size();
-    image = make_image(size);
+    image = make_image(size, tracer.settings().threads);
     done.assign(size.pixel_count(), 0);
     broken.assign(size.pixel_count(), 0);
     if (plan.progressive) {

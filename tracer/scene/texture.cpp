@@ -162,7 +162,7 @@ class MipSampler {
 public:
     MipSampler(const TexturePixels& pixels, const TextureMap& map, float level)
         : map_(map),
-          fraction_(level - std::floor(level)),
+          fraction_(level - static_cast<float>(static_cast<int>(level))),
           nearest_(level == 0.0f && map.filter == TextureFilter::nearest),
           finer_(pixels, static_cast<int>(level), map),
           coarser_(pixels, static_cast<int>(level) + (fraction_ == 0.0f ? 0 : 1), map) {}
