@@ -39,6 +39,13 @@ void expect_same(const Traced& got, const Traced& wanted) {
     }
 }
 
+EyeRayList list_of(std::span<const EyeRay> eyes) {
+    EyeRayList list;
+    for (const EyeRay& eye : eyes)
+        list.add(eye);
+    return list;
+}
+
 // In portions of `step`, one after the other in the same memory.
 Traced breadth_first(const ShadeScene& scene, const std::vector<EyeRay>& eyes, std::size_t step) {
     Traced traced;
@@ -46,7 +53,7 @@ Traced breadth_first(const ShadeScene& scene, const std::vector<EyeRay>& eyes, s
     BatchTracer tracer;
     for (std::size_t first = 0; first < eyes.size(); first += step) {
         const std::size_t count = std::min(step, eyes.size() - first);
-        tracer.trace(scene, std::span(eyes).subspan(first, count),
+        tracer.trace(scene, list_of(std::span(eyes).subspan(first, count)).all(),
                      std::span(traced.rays).subspan(first, count), traced.counts);
     }
     return traced;
@@ -275,8 +282,8 @@ TEST(BatchTracer, ShootsNothingOnceStopped) {
     RayCounts counts;
     std::stop_source stop;
     stop.request_stop();
-    BatchTracer().trace(shade_scene(accel, accel.scene().lights, {}), eyes, results, counts,
-                        stop.get_token());
+    BatchTracer().trace(shade_scene(accel, accel.scene().lights, {}), list_of(eyes).all(), results,
+                        counts, stop.get_token());
     EXPECT_EQ(counts.eye_hits + counts.shadow + counts.reflection, 0u);
 }
 

@@ -13,6 +13,7 @@
 #include <glm/vec3.hpp>
 
 #include <optional>
+#include <span>
 
 namespace raypick {
 
@@ -64,6 +65,10 @@ public:
     [[nodiscard]] double aside(double c) const { return width_ * (c / size_.cols - 0.5); }
     [[nodiscard]] double above(double r) const { return -height_ * (r / size_.rows - 0.5); }
     [[nodiscard]] Ray ray(double aside, double above) const;
+    // The same of many points, to the bit, as vectors of whatever width the processor has. All
+    // three are equally long.
+    void rays(std::span<const double> aside, std::span<const double> above,
+              std::span<Ray> rays) const;
     // The ray through the same point of the plane at `focus_distance` (> 0) in front of the eye
     // that comes from another point of a thin lens: `lens`, along vx and vy from the lens's centre,
     // scene units. Everything in that plane is sharp.

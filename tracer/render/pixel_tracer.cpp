@@ -5,7 +5,10 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 namespace raypick {
@@ -82,10 +85,27 @@ std::uint64_t PixelTracer::seed_of(std::size_t ray) const {
     return scene_.draws_lots ? RandomSequence::derive(settings_.seed, ray) : 0;
 }
 
-EyeRay PixelTracer::centre_ray(Pixel pixel) const {
-    const auto row = static_cast<std::size_t>(pixel.row);
-    const auto col = static_cast<std::size_t>(pixel.col);
-    return {rays_.ray(aside_[col], above_[row]), cone_, seed_of(size_.index(pixel))};
+EyeRayList PixelTracer::centre_rays(std::span<const Pixel> pixels) const {
+    constexpr std::size_t kAtOnce = 64;
+    std::array<double, kAtOnce> aside{};
+    std::array<double, kAtOnce> above{};
+    EyeRayList eyes;
+    eyes.cone = cone_;
+    eyes.rays.resize(pixels.size());
+    for (std::size_t first = 0; first < pixels.size(); first += kAtOnce) {
+        const std::size_t count = std::min(kAtOnce, pixels.size() - first);
+        for (std::size_t i = 0; i < count; ++i) {
+            aside[i] = aside_[static_cast<std::size_t>(pixels[first + i].col)];
+            above[i] = above_[static_cast<std::size_t>(pixels[first + i].row)];
+        }
+        rays_.rays(std::span(aside).first(count), std::span(above).first(count),
+                   std::span(eyes.rays).subspan(first, count));
+    }
+    if (scene_.draws_lots) {
+        for (const Pixel& pixel : pixels)
+            eyes.seeds.push_back(seed_of(size_.index(pixel)));
+    }
+    return eyes;
 }
 
 EyeRay PixelTracer::corner_ray(Pixel pixel) const {
@@ -104,20 +124,19 @@ SampleRay PixelTracer::sample_ray(Pixel pixel, int index) const {
     return {{ray, part_of(cone_, settings_.samples), sample.seed}, sample.negative};
 }
 
-void PixelTracer::trace(std::span<const EyeRay> eyes, std::span<TracedRay> results,
-                        RayCounts& counts, const std::stop_token& stop) const {
+void PixelTracer::trace(const EyeRays& eyes, std::span<TracedRay> results, RayCounts& counts,
+                        const std::stop_token& stop) const {
     trace(scene_, eyes, results, counts, stop);
 }
 
-void PixelTracer::look(std::span<const EyeRay> eyes, std::span<TracedRay> results,
+void PixelTracer::look(const EyeRays& eyes, std::span<TracedRay> results,
                        const std::stop_token& stop) const {
     RayCounts not_counted;
     trace(look_, eyes, results, not_counted, stop);
 }
 
-void PixelTracer::trace(const ShadeScene& scene, std::span<const EyeRay> eyes,
-                        std::span<TracedRay> results, RayCounts& counts,
-                        const std::stop_token& stop) const {
+void PixelTracer::trace(const ShadeScene& scene, const EyeRays& eyes, std::span<TracedRay> results,
+                        RayCounts& counts, const std::stop_token& stop) const {
     std::unique_ptr<BatchTracer> tracer;
     {
         const std::lock_guard lock(mutex_);

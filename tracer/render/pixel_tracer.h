@@ -36,8 +36,8 @@ public:
     PixelTracer(std::shared_ptr<const Accel> accel, const Camera& camera, ImageSize size,
                 const RenderSettings& settings);
 
-    // Through the pixel's centre: the ray that a pick follows.
-    [[nodiscard]] EyeRay centre_ray(Pixel pixel) const;
+    // Through the pixels' centres: the rays that picks follow.
+    [[nodiscard]] EyeRayList centre_rays(std::span<const Pixel> pixels) const;
     // Through the pixel's top left corner; row and column may be one beyond the last pixel's.
     [[nodiscard]] EyeRay corner_ray(Pixel pixel) const;
     // Sample `index` of [0, sample_count()) of the stratified pattern.
@@ -45,14 +45,13 @@ public:
     [[nodiscard]] int sample_count() const { return pattern_.count(); }
     [[nodiscard]] const FilterSampler& filter() const { return pattern_.filter(); }
 
-    // Sets results[i] to what eyes[i] brings back, and adds the rays shot to `counts`. Rays that
-    // lie side by side in the image should be so here. Once `stop` is requested the results are
-    // worthless.
-    void trace(std::span<const EyeRay> eyes, std::span<TracedRay> results, RayCounts& counts,
+    // Sets results[i] to what ray i of `eyes` brings back, and adds the rays shot to `counts`. Rays
+    // that lie side by side in the image should be so here. Once `stop` is requested the results
+    // are worthless.
+    void trace(const EyeRays& eyes, std::span<TracedRay> results, RayCounts& counts,
                const std::stop_token& stop) const;
     // What they hit, without colour.
-    void look(std::span<const EyeRay> eyes, std::span<TracedRay> results,
-              const std::stop_token& stop) const;
+    void look(const EyeRays& eyes, std::span<TracedRay> results, const std::stop_token& stop) const;
 
     [[nodiscard]] const Camera& camera() const { return camera_; }
     [[nodiscard]] ImageSize size() const { return size_; }
@@ -60,7 +59,7 @@ public:
 
 private:
     [[nodiscard]] std::uint64_t seed_of(std::size_t ray) const;
-    void trace(const ShadeScene& scene, std::span<const EyeRay> eyes, std::span<TracedRay> results,
+    void trace(const ShadeScene& scene, const EyeRays& eyes, std::span<TracedRay> results,
                RayCounts& counts, const std::stop_token& stop) const;
 
     std::shared_ptr<const Accel> accel_;

@@ -1,20 +1,15 @@
 #include "tracer/render/trace_tile.h"
 
 #include <cstddef>
-#include <new>
 
 namespace raypick {
 
 namespace {
 
-std::vector<EyeRay> centre_rays(const PixelTracer& tracer, const Tile& tile,
-                                const std::vector<Pixel>& pixels) {
-    std::vector<EyeRay> eyes(pixels.size());
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-        // In place: copies of what was just put together make processors wait for the parts.
-        ::new (static_cast<void*>(&eyes[i])) EyeRay(tracer.centre_ray(tile.in_image(pixels[i])));
-    }
-    return eyes;
+EyeRayList centre_rays(const PixelTracer& tracer, const Tile& tile, std::vector<Pixel> pixels) {
+    for (Pixel& pixel : pixels)
+        pixel = tile.in_image(pixel);
+    return tracer.centre_rays(pixels);
 }
 
 // The colours at the corners of the tile's pixels.
@@ -26,17 +21,17 @@ std::vector<glm::vec3> corner_colours(const PixelTracer& tracer, const Tile& til
     RayCounts not_counted;
     for (const bool own : {true, false}) {
         std::vector<std::size_t> places;
-        std::vector<EyeRay> eyes;
+        EyeRayList eyes;
         for (const Pixel& pixel : pixels_in_blocks(corners)) {
             const Pixel corner = tile.in_image(pixel);
             const bool is_own = (pixel.row < size.rows || corner.row == tracer.size().rows) &&
                                 (pixel.col < size.cols || corner.col == tracer.size().cols);
             if (is_own != own) continue;
             places.push_back(corners.index(pixel));
-            eyes.push_back(tracer.corner_ray(corner));
+            eyes.add(tracer.corner_ray(corner));
         }
-        std::vector<TracedRay> traced(eyes.size());
-        tracer.trace(eyes, traced, own ? counts : not_counted, stop);
+        LargeArray<TracedRay> traced(places.size());
+        tracer.trace(eyes.all(), traced, own ? counts : not_counted, stop);
         for (std::size_t i = 0; i < places.size(); ++i)
             colours[places[i]] = traced[i].colour;
     }
@@ -49,12 +44,12 @@ TilePart trace_blocks(const PixelTracer& tracer, const Tile& tile, int step,
                       const std::stop_token& stop) {
     TilePart part(tile);
     const std::vector<Pixel> blocks = pixels_in_blocks(tile.size());
-    std::vector<EyeRay> eyes;
-    eyes.reserve(blocks.size());
+    std::vector<Pixel> samples;
+    samples.reserve(blocks.size());
     for (const Pixel& block : blocks)
-        eyes.push_back(tracer.centre_ray(block_sample(tile.in_image(block), step, tracer.size())));
-    std::vector<TracedRay> traced(eyes.size());
-    tracer.trace(eyes, traced, part.rays, stop);
+        samples.push_back(block_sample(tile.in_image(block), step, tracer.size()));
+    LargeArray<TracedRay> traced(blocks.size());
+    tracer.trace(tracer.centre_rays(samples).all(), traced, part.rays, stop);
     for (std::size_t i = 0; i < blocks.size(); ++i)
         part.set(part.image.size.index(blocks[i]), traced[i]);
     return part;
@@ -69,8 +64,8 @@ TilePart trace_centres(const PixelTracer& tracer, const Tile& tile, const Coarse
             return take_sample(*coarse, tile.in_image(pixel), part, part.image.size.index(pixel));
         });
     }
-    std::vector<TracedRay> traced(pixels.size());
-    tracer.trace(centre_rays(tracer, tile, pixels), traced, part.rays, stop);
+    LargeArray<TracedRay> traced(pixels.size());
+    tracer.trace(centre_rays(tracer, tile, pixels).all(), traced, part.rays, stop);
     for (std::size_t i = 0; i < pixels.size(); ++i)
         part.set(part.image.size.index(pixels[i]), traced[i]);
     return part;
@@ -78,8 +73,8 @@ TilePart trace_centres(const PixelTracer& tracer, const Tile& tile, const Coarse
 
 void look_at_centres(const PixelTracer& tracer, TilePart& part, const std::stop_token& stop) {
     const std::vector<Pixel> pixels = pixels_in_blocks(part.image.size);
-    std::vector<TracedRay> seen(pixels.size());
-    tracer.look(centre_rays(tracer, part.tile, pixels), seen, stop);
+    LargeArray<TracedRay> seen(pixels.size());
+    tracer.look(centre_rays(tracer, part.tile, pixels).all(), seen, stop);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         seen[i].colour = glm::vec3(0.0f);
         part.set(part.image.size.index(pixels[i]), seen[i]);
@@ -107,16 +102,16 @@ TilePart trace_corners(const PixelTracer& tracer, const Tile& tile, const std::s
 void add_samples(const PixelTracer& tracer, const Tile& tile, const std::vector<Pixel>& pixels,
                  int sample, std::vector<PixelMean>& sums, RayCounts& counts,
                  const std::stop_token& stop) {
-    std::vector<EyeRay> eyes;
+    EyeRayList eyes;
     std::vector<std::uint8_t> negative;
     for (const Pixel& pixel : pixels) {
         const SampleRay ray = tracer.sample_ray(tile.in_image(pixel), sample);
-        eyes.push_back(ray.eye);
+        eyes.add(ray.eye);
         negative.push_back(ray.negative ? 1 : 0);
     }
-    std::vector<TracedRay> traced(eyes.size());
-    tracer.trace(eyes, traced, counts, stop);
-    for (std::size_t i = 0; i < eyes.size(); ++i)
+    LargeArray<TracedRay> traced(pixels.size());
+    tracer.trace(eyes.all(), traced, counts, stop);
+    for (std::size_t i = 0; i < pixels.size(); ++i)
         sums[i].add(traced[i].colour, negative[i] != 0);
 }
 

@@ -42,9 +42,8 @@ BatchTracer::Generation& BatchTracer::generation(int depth) {
     return generations_[index];
 }
 
-void BatchTracer::trace(const ShadeScene& scene, std::span<const EyeRay> eyes,
-                        std::span<TracedRay> results, RayCounts& counts,
-                        const std::stop_token& stop) {
+void BatchTracer::trace(const ShadeScene& scene, const EyeRays& eyes, std::span<TracedRay> results,
+                        RayCounts& counts, const std::stop_token& stop) {
     const Job job{scene, eyes, results, counts, stop};
     begin(eyes);
     counts.eye += eyes.size();
@@ -54,15 +53,19 @@ void BatchTracer::trace(const ShadeScene& scene, std::span<const EyeRay> eyes,
         results[i].colour = rays[i].passed * rays[i].colour;
 }
 
-void BatchTracer::begin(std::span<const EyeRay> eyes) {
+void BatchTracer::begin(const EyeRays& eyes) {
     Generation& first = generation(1);
     first.interiors.clear();
-    first.rays.assign(eyes.size(), new_ray_);
+    first.rays.resize(eyes.size(), new_ray_);
     for (std::size_t i = 0; i < eyes.size(); ++i) {
-        PathRay& path = first.rays[i];
+        PathRay& path = first.rays[i];  // all of it but what eye rays have no use for
         path.parent = static_cast<std::uint32_t>(i);
-        path.cone = eyes[i].cone;
-        path.seed = eyes[i].seed;
+        path.cone = eyes.cone;
+        path.weight = 1.0f;
+        path.seed = eyes.seed(i);
+        path.interior = kNoInterior;
+        path.passed = glm::vec3(1.0f);
+        path.colour = glm::vec3(0.0f);
     }
 }
 
@@ -106,8 +109,8 @@ void BatchTracer::load_rays(const Step& step, std::span<const std::uint32_t> por
     rays_.resize(portion.size());
     directions_.assign(portion.size(), 0);
     if (step.depth == 1) {
-        for (std::size_t i = 0; i < portion.size(); ++i)
-            rays_[i] = step.job.eyes[portion[i]].ray;
+        const std::span<const Ray> eyes = step.job.eyes.rays;  // as they come
+        std::copy_n(&eyes[portion.front()], portion.size(), rays_.begin());
         return;
     }
     for (std::size_t i = 0; i < portion.size(); ++i) {

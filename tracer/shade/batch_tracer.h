@@ -30,9 +30,9 @@ namespace raypick {
 // the same time.
 class BatchTracer {
 public:
-    // Sets results[i] to what trace() finds for eyes[i], and adds the rays to `counts`. Once `stop`
-    // is requested no more rays are shot, and the results are worthless.
-    void trace(const ShadeScene& scene, std::span<const EyeRay> eyes, std::span<TracedRay> results,
+    // Sets results[i] to what trace() finds for ray i of `eyes`, and adds the rays to `counts`.
+    // Once `stop` is requested no more rays are shot, and the results are worthless.
+    void trace(const ShadeScene& scene, const EyeRays& eyes, std::span<TracedRay> results,
                RayCounts& counts, const std::stop_token& stop = {});
 
 private:
@@ -66,7 +66,7 @@ private:
     // What one call of trace() is about.
     struct Job {
         const ShadeScene& scene;
-        std::span<const EyeRay> eyes;
+        const EyeRays& eyes;
         std::span<TracedRay> results;
         RayCounts& counts;
         const std::stop_token& stop;
@@ -80,7 +80,7 @@ private:
     };
 
     Generation& generation(int depth);
-    void begin(std::span<const EyeRay> eyes);
+    void begin(const EyeRays& eyes);
     void follow(const Job& job, int depth);
     void follow_portion(const Step& step, std::span<const std::uint32_t> portion);
     void find_points(const Step& step);

@@ -1,0 +1,84 @@
+// Many rays of a camera at once against one after the other.
+#include "tests/each_instruction_set.h"
+#include "tracer/geometry/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace raypick {
+namespace {
+
+constexpr ImageSize kOdd{37, 53};
+
+Camera slanted(Projection projection) {
+    Camera camera;
+    camera.eye = {3.0, 2.0, 7.0};
+    camera.at = {-1.0, 0.5, 1.0};
+    camera.up = {0.1, 1.0, -0.2};
+    camera.fovy = 71.0;
+    camera.near = 0.3;
+    camera.projection = projection;
+    return camera;
+}
+
+std::uint32_t bits(float x) {
+    return std::bit_cast<std::uint32_t>(x);
+}
+
+void expect_same_bits(const Ray& got, const Ray& wanted) {
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_EQ(bits(got.origin[k]), bits(wanted.origin[k]));
+        EXPECT_EQ(bits(got.direction[k]), bits(wanted.direction[k]));
+    }
+    EXPECT_EQ(bits(got.t_min), bits(wanted.t_min));
+    EXPECT_EQ(bits(got.t_max), bits(wanted.t_max));
+}
+
+class CameraRays : public OnInstructionSet {};
+
+TEST_P(CameraRays, AreThoseOfOnePointEach) {
+    for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+        const RayGenerator generator(slanted(projection), kOdd);
+        std::vector<double> aside;
+        std::vector<double> above;
+        for (int row = 0; row < kOdd.rows; ++row) {
+            for (int col = 0; col < kOdd.cols; ++col) {
+                const ImagePoint point = pixel_centre({row, col});
+                aside.push_back(generator.aside(point.c));
+                above.push_back(generator.above(point.r));
+            }
+        }
+        Ray none;
+        none.t_min = none.t_max = -1.0f;
+        std::vector<Ray> rays(aside.size() + 1, none);
+        generator.rays(aside, above, std::span(rays).first(aside.size()));
+        for (std::size_t i = 0; i < aside.size(); ++i) {
+            SCOPED_TRACE(i);
+            expect_same_bits(rays[i], generator.ray(aside[i], above[i]));
+        }
+        expect_same_bits(rays.back(), none);
+    }
+}
+
+// None, one, and around what a vector holds.
+TEST_P(CameraRays, OfAnyNumber) {
+    const RayGenerator generator(slanted(Projection::perspective), kOdd);
+    for (std::size_t count = 0; count < 35; ++count) {
+        SCOPED_TRACE(count);
+        const std::vector<double> aside(count, 0.25);
+        const std::vector<double> above(count, -0.5);
+        std::vector<Ray> rays(count);
+        generator.rays(aside, above, rays);
+        for (const Ray& ray : rays)
+            expect_same_bits(ray, generator.ray(0.25, -0.5));
+    }
+}
+
+RAYPICK_ON_EACH_INSTRUCTION_SET(CameraRays);
+
+}  // namespace
+}  // namespace raypick
