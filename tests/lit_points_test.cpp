@@ -5,9 +5,12 @@
 #include "tests/each_instruction_set.h"
 #include "tests/same_surfaces.h"
 #include "tests/tracer_scenes.h"
+#include "tracer/shade/branches.h"
 #include "tracer/shade/lit_point.h"
 
 #include <gtest/gtest.h>
+
+#include <limits>
 
 namespace raypick {
 namespace {
@@ -22,13 +25,8 @@ struct End {
     glm::vec3 own{0.0f};
 
     [[nodiscard]] ShadingPoint point() const {
-        return {surface,
-                kind,
-                material,
-                normal,
-                surface.geometric_normal,
-                incoming,
-                1.001f * surface.position};
+        const float side = surface.front_face ? 1.0f : -1.0f;
+        return {surface, kind, material, normal, side * surface.geometric_normal, incoming};
     }
 };
 
@@ -40,7 +38,9 @@ End random_end(std::uint64_t seed) {
     Random random(seed);
     End end;
     end.surface.position = glm::vec3(2.0 * random.direction());
+    end.surface.position_error = 1e-6f * colour_of(random);
     end.surface.geometric_normal = glm::vec3(random.direction());
+    end.surface.front_face = seed % 2 == 0;
     end.normal =
         glm::normalize(end.surface.geometric_normal + 0.5f * glm::vec3(random.direction()));
     end.incoming = glm::vec3(random.direction());
@@ -58,6 +58,20 @@ std::vector<End> random_ends(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i)
         ends.push_back(random_end(i));
     if (count > 4) ends[4].surface.position = {1.0f, 2.0f, 3.0f};  // where the lights are
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    if (count > 15) {  // where floats have no next ones
+        ends[9].surface.position = {0.0f, -0.0f, kInfinity};
+        ends[10].surface.position = {-kInfinity, std::numeric_limits<float>::quiet_NaN(), 0.0f};
+        ends[11].surface.geometric_normal = {0.0f, -1.0f, 0.0f};
+        ends[12].surface.geometric_normal = {1.0f, 0.0f, -0.0f};
+        ends[12].surface.position = {-1e-45f, 0.0f, 0.0f};
+        ends[13].surface.geometric_normal = -ends[9].surface.geometric_normal;
+        ends[13].surface.position = ends[9].surface.position;
+        ends[14].surface.geometric_normal = -ends[10].surface.geometric_normal;
+        ends[14].surface.position = ends[10].surface.position;
+        for (std::size_t i : {9u, 10u, 11u, 12u, 13u, 14u})
+            ends[i].surface.position_error = glm::vec3(0.0f);
+    }
     return ends;
 }
 
@@ -123,6 +137,7 @@ void compare(LitPoints& points, const std::vector<End>& ends, bool shadows) {
         points.add(static_cast<std::uint32_t>(3 * i), ends[i].point(), ends[i].own);
         wanted.push_back(ends[i].own);
     }
+    points.leave_surfaces();
     std::vector<Ray> rays(ends.size());
     std::vector<std::uint32_t> of(ends.size());
     for (const Light& light : lights()) {
@@ -154,6 +169,33 @@ TEST_P(LitPointsBy, AreThoseOfLitPointToTheBit) {
         SCOPED_TRACE(count);
         for (const bool shadows : {false, true})
             compare(points, random_ends(count), shadows);
+    }
+}
+
+// Normals lean, so that some mirrored rays would lead into the surface, and incoming rays come from
+// everywhere.
+TEST_P(LitPointsBy, MirrorAsBranchesDo) {
+    ShadeScene scene;
+    std::vector<End> ends = random_ends(500);
+    LitPoints points;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        ends[i].kind.reflect = ends[i].material.reflect = glm::vec3(0.5f);
+        if (i % 5 == 0) ends[i].normal = glm::vec3(Random(i).direction());
+        if (i % 9 == 0) ends[i].incoming = ends[i].normal;
+        points.add(static_cast<std::uint32_t>(i), ends[i].point(), ends[i].own);
+        if (i / 16 % 3 != 0) points.want_mirrored(i);
+    }
+    points.mirror();
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        if (i / 16 % 3 == 0) continue;
+        SCOPED_TRACE(i);
+        const ShadingPoint point = ends[i].point();
+        Branches branches;
+        find_branches(scene, point, {}, 1.0f, branches);
+        Ray ray;
+        points.take_mirrored(i, ray);
+        const Ray wanted = leaving(point, branches.branch[0].direction);
+        expect_same_rays(std::span(&ray, 1), std::span(&wanted, 1));
     }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <numeric>
 
 namespace raypick {
@@ -48,7 +49,7 @@ void BatchTracer::trace(const ShadeScene& scene, const EyeRays& eyes, std::span<
     begin(eyes);
     counts.eye += eyes.size();
     follow(job, 1);
-    const std::vector<PathRay>& rays = generation(1).rays;
+    const LargeArray<PathRay>& rays = generation(1).rays;
     for (std::size_t i = 0; i < rays.size(); ++i)
         results[i].colour = rays[i].passed * rays[i].colour;
 }
@@ -56,17 +57,20 @@ void BatchTracer::trace(const ShadeScene& scene, const EyeRays& eyes, std::span<
 void BatchTracer::begin(const EyeRays& eyes) {
     Generation& first = generation(1);
     first.interiors.clear();
-    first.rays.resize(eyes.size(), new_ray_);
-    for (std::size_t i = 0; i < eyes.size(); ++i) {
-        PathRay& path = first.rays[i];  // all of it but what eye rays have no use for
-        path.parent = static_cast<std::uint32_t>(i);
-        path.cone = eyes.cone;
-        path.weight = 1.0f;
-        path.seed = eyes.seed(i);
-        path.interior = kNoInterior;
-        path.passed = glm::vec3(1.0f);
-        path.colour = glm::vec3(0.0f);
-    }
+    first.rays.resize(eyes.size());
+    for (std::size_t i = 0; i < eyes.size(); ++i)  // rays, shares and directions have no use here
+        set_begun(first.rays[i], static_cast<std::uint32_t>(i), eyes.cone, 1.0f, eyes.seed(i));
+}
+
+void BatchTracer::set_begun(PathRay& path, std::uint32_t parent, const RayCone& cone, float weight,
+                            std::uint64_t seed) {
+    path.parent = parent;
+    path.cone = cone;
+    path.weight = weight;
+    path.seed = seed;
+    path.interior = kNoInterior;
+    path.passed = glm::vec3(1.0f);
+    path.colour = glm::vec3(0.0f);
 }
 
 // Brings back what comes along all rays of a generation.
@@ -96,6 +100,7 @@ void BatchTracer::follow_portion(const Step& step, std::span<const std::uint32_t
     step.next.rays.clear();
     step.next.interiors.clear();
     find_points(step);
+    send_mirrored(step);
     light_points(step);
     if (step.next.rays.empty()) return;
     follow(step.job, step.depth + 1);
@@ -123,6 +128,7 @@ void BatchTracer::load_rays(const Step& step, std::span<const std::uint32_t> por
 // higher priority, and sends on the next generation.
 void BatchTracer::find_points(const Step& step) {
     points_.clear();
+    mirrored_.clear();
     for (int hidden = 0; !at_work_.empty(); ++hidden) {
         if (step.job.stop.stop_requested()) return;
         intersect_groups(step);
@@ -191,9 +197,14 @@ bool BatchTracer::arrive(const Step& step, int hidden, std::size_t i) {
     path.weight *= largest(path.passed);
     const ShadingPoint point =
         shading_point(scene, found, ray.direction, path.cone.width, &with_maps_);
-    points_.add(at_work_[i], point, own_light(scene, point));
+    points_.add(
+        at_work_[i], point,
+        found.material->has_maps ? own_light(*scene.scene, point.material) : found.material->own);
     if (step.depth == 1) step.job.results[path.parent].normal = point.normal;
-    if (found.material->branches && step.depth < scene.settings.depth) {
+    if (!found.material->branches || step.depth >= scene.settings.depth) return false;
+    if (found.material->only_mirrors) {
+        want_mirrored(step, at_work_[i], *found.material);
+    } else {
         const ShadingPoint in_memory(point);  // lets `point` stay in registers
         send_branches(step, at_work_[i], in_memory, boundary);
     }
@@ -217,14 +228,13 @@ void BatchTracer::send_branches(const Step& step, std::uint32_t from, const Shad
     for (std::size_t i = 0; i < branches_.count; ++i) {
         const Branch& branch = branches_.branch[i];
         count_branch(step.job.counts, branch.kind, step.depth + 1);
-        step.next.rays.push_back(new_ray_);
-        PathRay& onwards = step.next.rays.back();
+        PathRay& onwards = step.next.add();
         set_leaving(point, branch.direction, onwards.ray);
+        onwards.ray.t_min = 0.0f;
+        onwards.ray.t_max = std::numeric_limits<float>::infinity();
         onwards.share = branch.share;
-        onwards.parent = from;
-        onwards.cone = path.cone;
-        onwards.weight = branch.weight;
-        onwards.seed = branch_seed(scene, path.seed, branch.kind);
+        set_begun(onwards, from, path.cone, branch.weight,
+                  branch_seed(scene, path.seed, branch.kind));
         onwards.direction = direction_group(branch.kind, branch.direction);
         if (branch.kind == BranchKind::transmitted && boundary.crossing != nullptr) {
             step.next.put_inside(onwards, boundary.crossing->after);
@@ -234,9 +244,41 @@ void BatchTracer::send_branches(const Step& step, std::uint32_t from, const Shad
     }
 }
 
+// What find_branches would say of the latest point, on a surface that only mirrors.
+void BatchTracer::want_mirrored(const Step& step, std::uint32_t from,
+                                const PreparedMaterial& material) {
+    const float weight = step.at.rays[from].weight * largest(material.mirrored);
+    const float cutoff = step.job.scene.settings.cutoff;
+    if (cutoff != 0.0f && !(weight > cutoff)) return;
+    const std::size_t point = points_.size() - 1;
+    points_.want_mirrored(point);
+    mirrored_.push_back({&material, static_cast<std::uint32_t>(point), weight});
+}
+
+// More rays of the next generation.
+void BatchTracer::send_mirrored(const Step& step) {
+    if (mirrored_.empty()) return;
+    points_.mirror();
+    for (const Mirrored& mirrored : mirrored_) {
+        const std::uint32_t from = points_.ray(mirrored.point);
+        const PathRay& path = step.at.rays[from];
+        count_branch(step.job.counts, BranchKind::mirrored, step.depth + 1);
+        PathRay& onwards = step.next.add();
+        points_.take_mirrored(mirrored.point, onwards.ray);
+        onwards.share = mirrored.material->mirrored;
+        set_begun(onwards, from, path.cone, mirrored.weight,
+                  branch_seed(step.job.scene, path.seed, BranchKind::mirrored));
+        onwards.direction = direction_group(BranchKind::mirrored, onwards.ray.direction);
+        if (path.interior != kNoInterior) {
+            step.next.put_inside(onwards, step.at.interiors[path.interior]);
+        }
+    }
+}
+
 // One light after the other, so that rays to the same light travel together.
 void BatchTracer::light_points(const Step& step) {
     const std::vector<PreparedLight>& lights = step.job.scene.lights;
+    if (step.job.scene.settings.shadows) points_.leave_surfaces();
     for (std::size_t light = 0; light < lights.size() && points_.size() != 0; ++light) {
         for (int sample = 0; sample < lights[light].count(); ++sample) {
             if (step.job.stop.stop_requested()) return;

@@ -2,6 +2,7 @@
 // that those which go the same way can share the work of finding what they hit.
 #pragma once
 
+#include "tracer/parallel/large_array.h"
 #include "tracer/shade/boundary.h"
 #include "tracer/shade/branches.h"
 #include "tracer/shade/eye_ray.h"
@@ -53,12 +54,17 @@ private:
 
     // All rays of one depth that are there at a time.
     struct Generation {
-        std::vector<PathRay> rays;         // in the order in which they left
+        LargeArray<PathRay> rays;          // in the order in which they left
         std::vector<Interior> interiors;   // of those inside of something
         std::vector<std::uint32_t> order;  // in which they are followed
 
         [[nodiscard]] const Interior* interior_of(const PathRay& ray) const {
             return ray.interior == kNoInterior ? nullptr : &interiors[ray.interior];
+        }
+        // One ray more, all of which is to be set: clearing it takes its time.
+        PathRay& add() {
+            rays.resize(rays.size() + 1);
+            return rays.back();
         }
         void put_inside(PathRay& ray, const Interior& interior);
     };
@@ -81,6 +87,9 @@ private:
 
     Generation& generation(int depth);
     void begin(const EyeRays& eyes);
+    // All but the ray itself, its share and its direction.
+    static void set_begun(PathRay& path, std::uint32_t parent, const RayCone& cone, float weight,
+                          std::uint64_t seed);
     void follow(const Job& job, int depth);
     void follow_portion(const Step& step, std::span<const std::uint32_t> portion);
     void find_points(const Step& step);
@@ -91,6 +100,8 @@ private:
     static void see_sky(const Step& step, PathRay& path, const Ray& ray);
     void send_branches(const Step& step, std::uint32_t from, const ShadingPoint& point,
                        const Boundary& boundary);
+    void want_mirrored(const Step& step, std::uint32_t from, const PreparedMaterial& material);
+    void send_mirrored(const Step& step);
     void light_points(const Step& step);
     void light_points_by(const Step& step, std::size_t light, int sample);
     void shine(const Step& step, std::size_t light, int sample);
@@ -100,21 +111,24 @@ private:
 
     std::deque<Generation> generations_;  // by depth - 1
 
-    // What new rays are copies of: emplace_back() would zero them first, by an instruction that
-    // takes its time.
-    PathRay new_ray_;
-
-    // Of the portion at work.
-    std::vector<std::uint32_t> at_work_;  // rays on their way
-    std::vector<std::uint8_t> directions_;
-    std::vector<Ray> rays_;
-    std::vector<Hit> hits_;
-    std::vector<FoundHit> found_;
+    // Of the portion at work: all that is resized is written before it is read.
+    LargeArray<std::uint32_t> at_work_;  // rays on their way
+    LargeArray<std::uint8_t> directions_;
+    LargeArray<Ray> rays_;
+    LargeArray<Hit> hits_;
+    LargeArray<FoundHit> found_;
     SurfaceBatches surfaces_;
     Crossing crossing_;
     Branches branches_;
     SurfaceMaterial with_maps_;  // of the ray that arrives
     LitPoints points_;
+    // A point that sends on a mirrored ray and nothing else.
+    struct Mirrored {
+        const PreparedMaterial* material = nullptr;
+        std::uint32_t point = 0;
+        float weight = 0.0f;  // the ray's
+    };
+    std::vector<Mirrored> mirrored_;
     // As many as there are points at least: the first shadow_count_ are in use.
     std::vector<Ray> shadow_rays_;
     std::vector<std::uint32_t> shadowed_;  // the points of these

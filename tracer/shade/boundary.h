@@ -40,7 +40,6 @@ struct ShadingPoint {
     glm::vec3 normal;                 // shading normal
     glm::vec3 geometric;              // geometric normal
     glm::vec3 incoming;               // unit direction of the ray that arrived here
-    glm::vec3 outside;                // origin of rays that leave on the side of `geometric`
 };
 // `width`: of the ray's cone there. `with_maps` is where a material with maps goes, for others it
 // may be null; it and `found` must outlive the result.
@@ -51,28 +50,19 @@ inline ShadingPoint shading_point(const ShadeScene& scene, const FoundHit& found
     const Material& kind = *found.material->material;
     const float side = surface.front_face ? 1.0f : -1.0f;
     const glm::vec3 geometric = side * surface.geometric_normal;
-    const glm::vec3 outside = offset_origin(surface, geometric);
     glm::vec3 normal = surface.shading_normal;
     if (found.material->has_maps) {
         *with_maps = textured(*scene.scene, kind, surface, incoming, width);
         normal = mapped_normal(*scene.scene, kind, surface, incoming, width);
     }
     return {surface,       kind,      found.material->has_maps ? *with_maps : found.material->plain,
-            side * normal, geometric, incoming,
-            outside};
-}
-
-// What the surface gives off by itself: its own glow, and the ambient light on it.
-inline glm::vec3 own_light(const ShadeScene& scene, const ShadingPoint& point) {
-    return point.material.emissive + point.material.ambient * scene.scene->ambient;
+            side * normal, geometric, incoming};
 }
 
 // Lets a new ray leave the point, off its surface. In place: a copy of a ray just put together
 // makes processors wait for its parts.
 inline void set_leaving(const ShadingPoint& point, const glm::vec3& direction, Ray& ray) {
-    ray.origin = glm::dot(point.geometric, direction) > 0.0f
-                     ? point.outside
-                     : offset_origin(point.surface, direction);
+    ray.origin = offset_origin(point.surface, direction);
     ray.direction = direction;
 }
 inline Ray leaving(const ShadingPoint& point, const glm::vec3& direction) {

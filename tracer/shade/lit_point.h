@@ -21,7 +21,7 @@ struct LitPoint {
 
 inline void set_lit_point(const ShadingPoint& point, LitPoint& lit) {
     lit.position = point.surface.position;
-    lit.outside = point.outside;
+    lit.outside = offset_origin(point.surface, point.geometric);
     lit.normal = point.normal;
     lit.geometric = point.geometric;
     lit.to_eye = -point.incoming;

@@ -4,6 +4,7 @@
 #include "tracer/shade/lit_point.h"
 
 #include <bit>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tracer/shade/lit_points.cpp"
@@ -67,6 +68,61 @@ HWY_INLINE std::uint32_t bits_of(D d, hn::Mask<D> mask) {
     std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(d, mask, bytes);
     return bytes[0] | std::uint32_t{bytes[1]} << 8;
+}
+
+// next_float.
+HWY_INLINE hn::Vec<Singles> next_float(hn::Vec<Singles> x, hn::Vec<Singles> way) {
+    const Singles d;
+    const hn::RebindToUnsigned<Singles> u;
+    const auto zero = hn::Zero(d);
+    const auto one = hn::Set(u, 1);
+    const auto bits = hn::BitCast(u, x);
+    const auto out = hn::Not(hn::Xor(hn::Gt(x, zero), hn::Gt(way, zero)));  // away from 0
+    const auto stepped = hn::BitCast(
+        d, hn::IfThenElse(hn::RebindMask(u, out), hn::Add(bits, one), hn::Sub(bits, one)));
+    const auto least = hn::CopySign(hn::BitCast(d, one), way);
+    const auto stays = hn::Or(hn::Or(hn::Eq(way, zero), hn::IsNaN(x)), hn::And(hn::IsInf(x), out));
+    return hn::IfThenElse(stays, x, hn::IfThenElse(hn::Eq(x, zero), least, stepped));
+}
+
+// offset_origin on the side of this normal.
+HWY_INLINE Triple<hn::Vec<Singles>> offset_origin(const Lanes& lanes,
+                                                  const Triple<hn::Vec<Singles>>& normal) {
+    const Singles d;
+    const auto error = lanes.load3(d, LitPoints::kOutside);
+    const auto distance = hn::Mul(hn::Set(d, 2.0f), dot(size(normal), error));
+    const auto origin = plus(lanes.load3(d, LitPoints::kPosition), times(distance, normal));
+    return {next_float(origin.x, normal.x), next_float(origin.y, normal.y),
+            next_float(origin.z, normal.z)};
+}
+
+// reflect_direction of branches.cpp, and set_leaving.
+HWY_INLINE void mirror(const Lanes& lanes, std::uint32_t front) {
+    const Singles d;
+    const auto zero = hn::Zero(d);
+    const auto negative = [](const Triple<hn::Vec<Singles>>& v) HWY_ATTR {
+        return Triple<hn::Vec<Singles>>{hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)};
+    };
+    const auto choose = [](hn::Mask<Singles> which, const Triple<hn::Vec<Singles>>& a,
+                           const Triple<hn::Vec<Singles>>& b) HWY_ATTR {
+        return Triple<hn::Vec<Singles>>{hn::IfThenElse(which, a.x, b.x),
+                                        hn::IfThenElse(which, a.y, b.y),
+                                        hn::IfThenElse(which, a.z, b.z)};
+    };
+    const auto incoming = negative(lanes.load3(d, LitPoints::kToEye));
+    const auto about = [&](const Triple<hn::Vec<Singles>>& n) HWY_ATTR {
+        const auto mirrored =
+            minus(incoming, times(hn::Mul(hn::Set(d, 2.0f), dot(incoming, n)), n));
+        return times(hn::Div(hn::Set(d, 1.0f), hn::Sqrt(dot(mirrored, mirrored))), mirrored);
+    };
+    const auto geometric = lanes.load3(d, LitPoints::kGeometric);
+    auto mirrored = about(lanes.load3(d, LitPoints::kNormal));
+    const auto away = hn::Gt(dot(mirrored, geometric), zero);
+    if (!hn::AllTrue(d, away)) mirrored = choose(away, mirrored, about(geometric));
+    const auto outward = choose(mask_of(d, front), geometric, negative(geometric));
+    const auto side = choose(hn::Ge(dot(outward, mirrored), zero), outward, negative(outward));
+    lanes.store3(d, LitPoints::kMirrored, mirrored);
+    lanes.store3(d, LitPoints::kMirroredOrigin, offset_origin(lanes, side));
 }
 
 // light_towards, for lights that shine the same everywhere and shares of 1.
@@ -180,6 +236,25 @@ private:
 
 }  // namespace
 
+void mirror(std::span<LitPoints::Block> blocks) {
+    for (LitPoints::Block& block : blocks) {
+        for (std::size_t i = 0; block.mirrors && i < LitPoints::kLanes; i += hn::Lanes(Singles())) {
+            mirror(Lanes(block, i), block.front >> i);
+        }
+    }
+}
+
+void leave_surfaces(std::span<LitPoints::Block> blocks) {
+    const Singles d;
+    for (LitPoints::Block& block : blocks) {
+        for (std::size_t i = 0; i < LitPoints::kLanes; i += hn::Lanes(d)) {
+            const Lanes lanes(block, i);
+            lanes.store3(d, LitPoints::kOutside,
+                         offset_origin(lanes, lanes.load3(d, LitPoints::kGeometric)));
+        }
+    }
+}
+
 void shine_from_point(const PreparedLight& light, std::span<LitPoints::Block> blocks) {
     for (LitPoints::Block& block : blocks) {
         for (std::size_t i = 0; i < LitPoints::kLanes; i += hn::Lanes(Doubles()))
@@ -210,6 +285,8 @@ HWY_AFTER_NAMESPACE();
 
 namespace raypick {
 
+HWY_EXPORT(mirror);
+HWY_EXPORT(leave_surfaces);
 HWY_EXPORT(shine_from_point);
 HWY_EXPORT(face_light);
 HWY_EXPORT(gather_light);
@@ -233,24 +310,44 @@ void LitPoints::add(std::uint32_t ray, const ShadingPoint& point, const glm::vec
     Block& block = blocks_[count_ / kLanes];
     const std::size_t lane = count_ % kLanes;
     ++count_;
-    if (lane == 0) block.shiny = block.blinn = 0;
-    LitPoint lit;
-    set_lit_point(point, lit);
-    put(block, lane, kPosition, lit.position);
-    put(block, lane, kOutside, lit.outside);
-    put(block, lane, kNormal, lit.normal);
-    put(block, lane, kGeometric, lit.geometric);
-    put(block, lane, kToEye, lit.to_eye);
-    const SurfaceMaterial& material = *lit.material;
+    if (lane == 0) {
+        block.shiny = block.blinn = block.front = 0;
+        block.mirrors = false;
+    }
+    put(block, lane, kPosition, point.surface.position);
+    put(block, lane, kOutside, point.surface.position_error);
+    put(block, lane, kNormal, point.normal);
+    put(block, lane, kGeometric, point.geometric);
+    put(block, lane, kToEye, -point.incoming);
+    const SurfaceMaterial& material = point.material;
     put(block, lane, kDiffuse, material.diffuse);
-    put(block, lane, kSpecular, material.specular);
-    block.row[kShininess * kLanes + lane] = material.shininess;
     put(block, lane, kColour, own);
     block.ray[lane] = ray;
     block.opacity[lane] = material.opacity;
     const auto bit = [lane](bool is) { return (is ? 1u : 0u) << lane; };
-    block.shiny |= bit(material.specular != glm::vec3(0.0f));
+    if (material.specular != glm::vec3(0.0f)) {
+        put(block, lane, kSpecular, material.specular);
+        block.row[kShininess * kLanes + lane] = material.shininess;
+        block.shiny |= bit(true);
+    }
     block.blinn |= bit(material.model != LocalModel::phong);
+    block.front |= bit(point.surface.front_face);
+}
+
+void LitPoints::mirror() {
+    HWY_DYNAMIC_DISPATCH(mirror)(used());
+}
+
+void LitPoints::take_mirrored(std::size_t i, Ray& ray) const {
+    const float* const row = &blocks_[i / kLanes].row[i % kLanes];
+    ray.origin = vector_at<kLanes>(row, kMirroredOrigin);
+    ray.direction = vector_at<kLanes>(row, kMirrored);
+    ray.t_min = 0.0f;
+    ray.t_max = std::numeric_limits<float>::infinity();
+}
+
+void LitPoints::leave_surfaces() {
+    HWY_DYNAMIC_DISPATCH(leave_surfaces)(used());
 }
 
 void LitPoints::shine(const PreparedLight& light) {

@@ -17,8 +17,9 @@
 namespace raypick {
 
 // What lit_point.h says of one point and one light, to the bit, as vectors of whatever width the
-// processor has. Keeps its memory. Per light: shine() on all points, take_shadow_rays() if it casts
-// shadows, block() or tint() those in its way, gather().
+// processor has. Keeps its memory. First mirror(), if any point is to send a mirrored ray on, then
+// leave_surfaces(), if any light casts shadows. Then per light: shine() on all points,
+// take_shadow_rays() if it casts shadows, block() or tint() those in its way, gather().
 class LitPoints {
 public:
     void clear() { count_ = 0; }
@@ -30,6 +31,15 @@ public:
         return blocks_[i / kLanes].ray[i % kLanes];
     }
     [[nodiscard]] glm::vec3 position(std::size_t i) const { return at(i, kPosition); }
+
+    // Works out mirrored rays of all points in blocks of 16 where one is wanted, until the first
+    // light shines.
+    void want_mirrored(std::size_t i) { blocks_[i / kLanes].mirrors = true; }
+    void mirror();
+    void take_mirrored(std::size_t i, Ray& ray) const;
+
+    // Works out where rays to the lights begin.
+    void leave_surfaces();
 
     // True for lights that shine on all points at once; others shine on one after the other.
     [[nodiscard]] static bool at_once(const PreparedLight& light) {
@@ -58,7 +68,7 @@ public:
 
     // One float of each point is in each of these rows: of a LitPoint and its material,
     static constexpr std::size_t kPosition = 0;
-    static constexpr std::size_t kOutside = 3;
+    static constexpr std::size_t kOutside = 3;  // first the bounds on the position's error
     static constexpr std::size_t kNormal = 6;
     static constexpr std::size_t kGeometric = 9;
     static constexpr std::size_t kToEye = 12;
@@ -71,6 +81,9 @@ public:
     static constexpr std::size_t kToLight = 25;
     static constexpr std::size_t kDistance = 28;
     static constexpr std::size_t kLight = 29;
+    // Before one does, of the mirrored ray.
+    static constexpr std::size_t kMirrored = 25;
+    static constexpr std::size_t kMirroredOrigin = 28;
     static constexpr std::size_t kRows = 32;
     // Some points side by side.
     static constexpr std::size_t kLanes = 16;
@@ -82,6 +95,8 @@ public:
         std::uint32_t lit = 0;
         std::uint32_t shiny = 0;  // with a highlight
         std::uint32_t blinn = 0;  // by Blinn's model
+        std::uint32_t front = 0;  // seen from the front
+        bool mirrors = false;     // some do
     };
 
 private:

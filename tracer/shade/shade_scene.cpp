@@ -13,7 +13,8 @@ namespace raypick {
 
 namespace {
 
-PreparedMaterial prepared(const Material& material, const RenderSettings& settings) {
+PreparedMaterial prepared(const Scene& scene, const Material& material,
+                          const RenderSettings& settings) {
     PreparedMaterial result;
     result.material = &material;
     result.plain = plain(material);
@@ -25,6 +26,11 @@ PreparedMaterial prepared(const Material& material, const RenderSettings& settin
                                  (material.opacity < 1.0f || material.map(MapSlot::opacity)));
     result.branches = (settings.refractions && result.see_through) ||
                       (settings.reflections && (material.reflects() || material.transmits()));
+    result.only_mirrors = settings.reflections && material.reflects() && !material.transmits() &&
+                          material.reflectance == Reflectance::constant && !result.has_maps &&
+                          result.plain.opacity == 1.0f;
+    result.mirrored = result.plain.reflect;
+    result.own = own_light(scene, result.plain);
     return result;
 }
 
@@ -94,12 +100,13 @@ ShadeScene shade_scene(const Accel& accel, std::span<const Light> lights,
     const std::vector<Material>& materials = accel.scene().materials;
     result.materials.reserve(materials.size() + 1);
     for (const Material& material : materials) {
-        result.materials.push_back(prepared(material, settings));
+        result.materials.push_back(prepared(accel.scene(), material, settings));
         if (result.materials.back().has_maps) result.has_maps = true;
         if (settings.refractions && result.materials.back().fills) result.has_bodies = true;
         if (result.materials.back().see_through) result.sees_through = true;
     }
-    result.materials.push_back(prepared(material(accel.scene(), kNoMaterial), settings));
+    result.materials.push_back(
+        prepared(accel.scene(), material(accel.scene(), kNoMaterial), settings));
     if (result.tints_shadows()) result.clear = clearness_of(result);
     return result;
 }

@@ -24,6 +24,11 @@ struct PreparedMaterial {
     bool fills = false;        // a body: see fills() in interior.h
     bool see_through = false;  // lets some of a light through, where shadows are tinted
     bool branches = false;     // may send rays on, by the settings
+    // Sends on one mirrored ray and nothing else, with the same share of what comes along it
+    // everywhere.
+    bool only_mirrors = false;
+    glm::vec3 mirrored{0.0f};
+    glm::vec3 own{0.0f};  // light that the surface gives off by itself, without its maps
 };
 
 // A frame's scene, lights and settings as shading sees them. Immutable while rays are traced.

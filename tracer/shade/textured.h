@@ -32,6 +32,11 @@ SurfaceMaterial plain(const Material& material);
 SurfaceMaterial textured(const Scene& scene, const Material& material, const SurfacePoint& surface,
                          const glm::vec3& direction, float width);
 
+// What the surface gives off by itself: its own glow, and the ambient light on it.
+inline glm::vec3 own_light(const Scene& scene, const SurfaceMaterial& material) {
+    return material.emissive + material.ambient * scene.ambient;
+}
+
 // The shading normal under the material's normal map, unit, outward as surface.shading_normal N:
 //   normalize(gain x T + gain y B + z N), (x, y, z) = 2 texel - 1,
 // with T = dpdu made perpendicular to N and B = dpdv made perpendicular to N and T, both unit.

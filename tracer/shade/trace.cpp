@@ -110,7 +110,7 @@ private:
     glm::vec3 local(const ShadingPoint& point, const Path& path) {
         LitPoint lit;
         set_lit_point(point, lit);
-        glm::vec3 colour = own_light(scene_, point);
+        glm::vec3 colour = own_light(*scene_.scene, point.material);
         for (std::size_t l = 0; l < scene_.lights.size(); ++l) {
             const PreparedLight& light = scene_.lights[l];
             const std::uint64_t seed = light_seed(scene_, path.seed, l);
