@@ -26,11 +26,17 @@ inline void expect_same(const SurfacePoint& got, const SurfacePoint& wanted) {
     EXPECT_EQ(got.material, wanted.material);
 }
 
+inline void expect_same_uv(const SurfacePoint& got, const SurfacePoint& wanted) {
+    EXPECT_EQ(got.texture_uv, wanted.texture_uv);
+    EXPECT_TRUE(same_bits(got.dpdu, wanted.dpdu));
+    EXPECT_TRUE(same_bits(got.dpdv, wanted.dpdv));
+}
+
 // Lets add(object, ray, hit, surface) have what `count` rays hit, expects the surfaces after
 // find(), and returns how many hits there were.
 template <typename Add, typename Find>
 std::size_t compare_surfaces(const Accel& accel, std::size_t count, const Add& add,
-                             const Find& find) {
+                             const Find& find, bool textured = false) {
     const Scene& scene = accel.scene();
     const std::vector<Ray> rays = rays_through(accel.bounds(), 7, count);
     std::vector<Hit> hits(rays.size());
@@ -40,13 +46,16 @@ std::size_t compare_surfaces(const Accel& accel, std::size_t count, const Add& a
     for (std::size_t i = 0; i < rays.size(); ++i) {
         if (!hits[i].valid()) continue;
         const std::size_t index = object_index(scene, hits[i].object);
-        add(HitObject{scene.objects[index], accel.object_from_world(index), kNoMaterial, false},
+        add(HitObject{scene.objects[index], accel.object_from_world(index), kNoMaterial, textured},
             rays[i], hits[i], got[i]);
         ++met;
     }
     find();
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (hits[i].valid()) expect_same(got[i], surface_point(scene, rays[i], hits[i]));
+        if (!hits[i].valid()) continue;
+        const SurfacePoint wanted = surface_point(scene, rays[i], hits[i]);
+        expect_same(got[i], wanted);
+        if (textured) expect_same_uv(got[i], wanted);
     }
     return met;
 }

@@ -10,9 +10,12 @@
 namespace raypick {
 namespace {
 
-// Slivers and large ones, flat and smooth, some with normals that point the wrong way.
+// Slivers and large ones, flat and smooth, some with normals that point the wrong way or without
+// uv.
 Scene triangles(double scale) {
     MeshData soup = soup_data(3, 300, 0.8);
+    for (std::size_t i = 0; i < soup.positions.size(); ++i)
+        soup.uvs.emplace_back(i % 7 < 2 ? glm::vec2(0.5f) : glm::vec2(soup.positions[i]));
     MeshData smooth = ball_data(3);
     smooth.normals = smooth.positions;
     smooth.normals[5] = -smooth.normals[5];
@@ -27,7 +30,8 @@ Scene triangles(double scale) {
     return scene;
 }
 
-std::size_t compare(const Accel& accel, TriangleSurfaces& surfaces, std::size_t count) {
+std::size_t compare(const Accel& accel, TriangleSurfaces& surfaces, std::size_t count,
+                    bool textured = false) {
     surfaces.clear();
     return compare_surfaces(
         accel, count,
@@ -35,7 +39,7 @@ std::size_t compare(const Accel& accel, TriangleSurfaces& surfaces, std::size_t 
             EXPECT_TRUE(TriangleSurfaces::takes(at));
             surfaces.add(accel.scene(), at, ray, hit, surface);
         },
-        [&] { surfaces.find(accel.scene()); });
+        [&] { surfaces.find(accel.scene()); }, textured);
 }
 
 class TriangleSurfacesBy : public OnInstructionSet {};
@@ -44,7 +48,8 @@ TEST_P(TriangleSurfacesBy, AreThoseOfSurfacePointToTheBit) {
     TriangleSurfaces surfaces;
     for (const double scale : {1e-4, 1.0, 1e5}) {
         const Accel accel = accel_of(triangles(scale));
-        EXPECT_GT(compare(accel, surfaces, 4000), 2000u);
+        for (const bool textured : {false, true})
+            EXPECT_GT(compare(accel, surfaces, 4000, textured), 2000u);
         for (const std::size_t count : {0u, 1u, 2u, 3u, 7u, 17u})
             compare(accel, surfaces, count);
     }
@@ -63,7 +68,7 @@ TEST(TriangleSurfaces, NearTheEdgesToo) {
     EXPECT_GT(compare(accel_of(scene), surfaces, 4000), 500u);
 }
 
-TEST(TriangleSurfaces, TakesWhatNothingMovesAndNoTextureNeeds) {
+TEST(TriangleSurfaces, TakesWhatNothingMoves) {
     Scene scene;
     place_mesh(scene, ball_data(0));
     place_mesh(scene, ball_data(0), kNoMaterial, translate({1, 0, 0}));
@@ -71,7 +76,7 @@ TEST(TriangleSurfaces, TakesWhatNothingMovesAndNoTextureNeeds) {
     const Transform identity;
     const Transform moved = translate({-1, 0, 0});
     EXPECT_TRUE(TriangleSurfaces::takes({scene.objects[0], identity, kNoMaterial, false}));
-    EXPECT_FALSE(TriangleSurfaces::takes({scene.objects[0], identity, kNoMaterial, true}));
+    EXPECT_TRUE(TriangleSurfaces::takes({scene.objects[0], identity, kNoMaterial, true}));
     EXPECT_FALSE(TriangleSurfaces::takes({scene.objects[1], moved, kNoMaterial, false}));
     EXPECT_FALSE(TriangleSurfaces::takes({scene.objects[2], identity, kNoMaterial, false}));
 }

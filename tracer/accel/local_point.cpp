@@ -266,22 +266,6 @@ void take_mesh_normal(const Mesh& mesh, const glm::uvec3& corner, const Hit& hit
     point.smooth = true;
 }
 
-// From derivatives by the weights of the second and third corner to those by the mesh's uv.
-void take_mesh_uv(const Mesh& mesh, const glm::uvec3& corner, LocalPoint& point) {
-    const glm::dvec3 edge_b = point.dpdu;
-    const glm::dvec3 edge_c = point.dpdv;
-    point.dpdu = glm::dvec3(0.0);
-    point.dpdv = glm::dvec3(0.0);
-    if (mesh.uvs.empty()) return;
-    const glm::dvec2 a(mesh.uvs[corner.x]);
-    const glm::dvec2 b = glm::dvec2(mesh.uvs[corner.y]) - a;
-    const glm::dvec2 c = glm::dvec2(mesh.uvs[corner.z]) - a;
-    const double determinant = b.x * c.y - b.y * c.x;
-    if (!(std::abs(determinant) > 1e-15 * glm::length(b) * glm::length(c))) return;
-    point.dpdu = (c.y * edge_b - b.y * edge_c) / determinant;
-    point.dpdv = (b.x * edge_c - c.x * edge_b) / determinant;
-}
-
 struct LocalPointOf {
     const Scene& scene;
     const ObjectRay& ray;
@@ -388,12 +372,30 @@ struct LocalPointOf {
                                           glm::dvec3(mesh.positions[corner.y]),
                                           glm::dvec3(mesh.positions[corner.z]), rim);
         if (!mesh.normals.empty()) take_mesh_normal(mesh, corner, hit, point);
-        if (derivatives) take_mesh_uv(mesh, corner, point);
+        if (derivatives) {
+            const MeshDerivatives by_uv = mesh_derivatives(mesh, corner);
+            point.dpdu = by_uv.dpdu;
+            point.dpdv = by_uv.dpdv;
+        }
         return point;
     }
 };
 
 }  // namespace
+
+MeshDerivatives mesh_derivatives(const Mesh& mesh, const glm::uvec3& corner) {
+    if (mesh.uvs.empty()) return {};
+    const glm::dvec2 a(mesh.uvs[corner.x]);
+    const glm::dvec2 b = glm::dvec2(mesh.uvs[corner.y]) - a;
+    const glm::dvec2 c = glm::dvec2(mesh.uvs[corner.z]) - a;
+    const double determinant = b.x * c.y - b.y * c.x;
+    if (!(std::abs(determinant) > 1e-15 * glm::length(b) * glm::length(c))) return {};
+    const glm::dvec3 first(mesh.positions[corner.x]);
+    const glm::dvec3 edge_b = glm::dvec3(mesh.positions[corner.y]) - first;
+    const glm::dvec3 edge_c = glm::dvec3(mesh.positions[corner.z]) - first;
+    return {(c.y * edge_b - b.y * edge_c) / determinant,
+            (b.x * edge_c - c.x * edge_b) / determinant};
+}
 
 LocalPoint local_point(const Scene& scene, const Object& object, const ObjectRay& ray,
                        const Hit& hit, const PointNeeds& needs) {

@@ -36,4 +36,11 @@ struct PointNeeds {
 LocalPoint local_point(const Scene& scene, const Object& object, const ObjectRay& ray,
                        const Hit& hit, const PointNeeds& needs);
 
+// The derivatives by a mesh's uv on the triangle of these corners; 0 where these are degenerate.
+struct MeshDerivatives {
+    glm::dvec3 dpdu{0.0};
+    glm::dvec3 dpdv{0.0};
+};
+MeshDerivatives mesh_derivatives(const Mesh& mesh, const glm::uvec3& corner);
+
 }  // namespace raypick

@@ -1,6 +1,7 @@
 #include "tracer/accel/triangle_surfaces.h"
 
 #include "tracer/accel/lane_rows.h"
+#include "tracer/accel/local_point.h"
 
 #include <algorithm>
 #include <limits>
@@ -163,7 +164,7 @@ namespace raypick {
 HWY_EXPORT(find_triangles);
 
 bool TriangleSurfaces::takes(const HitObject& at) {
-    return !at.textured && std::holds_alternative<MeshInstance>(at.object.shape) &&
+    return std::holds_alternative<MeshInstance>(at.object.shape) &&
            at.object_from_world.is_identity();
 }
 
@@ -192,6 +193,7 @@ void TriangleSurfaces::add(const Scene& scene, const HitObject& at, const Ray& r
     wanted.object = &at.object;
     wanted.object_from_world = &at.object_from_world;
     wanted.material = at.material;
+    wanted.textured = at.textured;
     wanted.ray = &ray;
     wanted.hit = &hit;
     wanted.result = &result;
@@ -204,10 +206,11 @@ void TriangleSurfaces::find(const Scene& scene) {
         const Block& block = blocks_[i / kLanes];
         if (block.room[i % kLanes] > 0.0) {
             take(wanted, block, i % kLanes);
+            if (wanted.textured) take_uv(scene, wanted, i == 0 ? nullptr : &wanted_[i - 1]);
         } else {
-            set_surface_point(scene,
-                              {*wanted.object, *wanted.object_from_world, wanted.material, false},
-                              *wanted.ray, *wanted.hit, *wanted.result);
+            const HitObject at{*wanted.object, *wanted.object_from_world, wanted.material,
+                               wanted.textured};
+            set_surface_point(scene, at, *wanted.ray, *wanted.hit, *wanted.result);
         }
     }
 }
@@ -220,6 +223,22 @@ void TriangleSurfaces::take(const Wanted& wanted, const Block& block, std::size_
     surface.geometric_normal = vector_at<kLanes>(out, kGeometric);
     surface.shading_normal = vector_at<kLanes>(out, kShading);
     set_untextured(*wanted.hit, wanted.material, surface);
+}
+
+void TriangleSurfaces::take_uv(const Scene& scene, const Wanted& wanted, const Wanted* before) {
+    SurfacePoint& surface = *wanted.result;
+    surface.texture_uv = texture_uv(scene, *wanted.object, *wanted.hit);
+    const std::uint32_t primitive = wanted.hit->primitive;
+    if (before != nullptr && before->textured && before->object == wanted.object &&
+        before->hit->primitive == primitive) {
+        surface.dpdu = before->result->dpdu;
+        surface.dpdv = before->result->dpdv;
+        return;
+    }
+    const Mesh& mesh = scene.meshes[std::get<MeshInstance>(wanted.object->shape).mesh];
+    const MeshDerivatives by_uv = mesh_derivatives(mesh, mesh.triangles[primitive]);
+    surface.dpdu = glm::vec3(by_uv.dpdu);
+    surface.dpdv = glm::vec3(by_uv.dpdv);
 }
 
 }  // namespace raypick

@@ -15,7 +15,7 @@ namespace raypick {
 // the processor has. What set_surface_point says, to the bit.
 class TriangleSurfaces {
 public:
-    // Whether add() takes such hits: triangles of a mesh that nothing moves and no texture needs.
+    // Whether add() takes such hits: triangles of a mesh that nothing moves.
     [[nodiscard]] static bool takes(const HitObject& at);
 
     void clear() { count_ = 0; }
@@ -55,12 +55,15 @@ private:
         const Object* object = nullptr;
         const Transform* object_from_world = nullptr;
         MaterialId material = kNoMaterial;
+        bool textured = false;
         const Ray* ray = nullptr;
         const Hit* hit = nullptr;
         SurfacePoint* result = nullptr;
     };
 
     static void take(const Wanted& wanted, const Block& block, std::size_t lane);
+    // What textures need; `before`: of the hit before this one, null if there was none.
+    static void take_uv(const Scene& scene, const Wanted& wanted, const Wanted* before);
 
     std::size_t count_ = 0;
     std::vector<Wanted> wanted_;  // as long as the blocks have room for
