@@ -2,6 +2,7 @@
 raypick_test(transform_test LABELS cpu)
 raypick_test(camera_test LABELS cpu)
 raypick_test(camera_rays_test LABELS cpu)
+raypick_test(texture_test LABELS cpu)
 raypick_test(shapes_test LABELS cpu)
 raypick_test(curved_shapes_test LABELS cpu)
 raypick_test(bvh_test LABELS cpu threads)
