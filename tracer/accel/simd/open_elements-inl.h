@@ -84,8 +84,8 @@ private:
 
     // Returns those of which it can't tell.
     template <typename Hits>
-    std::uint32_t tell_hits(const Decided& decided, const RootsInRange& in_range,
-                            const Hits& hits) const {
+    [[nodiscard]] std::uint32_t tell_hits(const Decided& decided, const RootsInRange& in_range,
+                                          const Hits& hits) const {
         typename Decided::Hits enters;
         typename Decided::Hits leaves;
         decided.hits_at(0, enters);
