@@ -36,8 +36,10 @@ if(TARGET raypick_io AND NOT RAYPICK_SANITIZE)
     if(TARGET raypick)
         set(program $<TARGET_FILE:raypick>)
     endif()
+    set(bench_folder ${PROJECT_BINARY_DIR}/bench)
     target_compile_definitions(raypick_bench PRIVATE
-        RAYPICK_MODELS="${RAYPICK_MODELS}" RAYPICK_PROGRAM="${program}")
+        RAYPICK_MODELS="${RAYPICK_MODELS}" RAYPICK_PROGRAM="${program}"
+        RAYPICK_BENCH_FOLDER="${bench_folder}")
     find_package(embree 3 QUIET)
     if(embree_FOUND)
         target_link_libraries(raypick_bench PRIVATE embree)
@@ -55,8 +57,6 @@ if(TARGET raypick_io AND NOT RAYPICK_SANITIZE)
         target_compile_definitions(raypick_bench PRIVATE RAYPICK_HAS_TINYOBJ)
     endif()
 
-    # What a run unpacks and writes stays in the build folder.
-    set(bench_folder ${PROJECT_BINARY_DIR}/bench)
     file(MAKE_DIRECTORY ${bench_folder})
     add_custom_target(bench COMMAND raypick_bench --json=bench.json
                       WORKING_DIRECTORY ${bench_folder} USES_TERMINAL VERBATIM)

@@ -80,7 +80,7 @@ std::unique_ptr<EmbreeRenderer> embree_renderer(const View& view, const Options&
     return std::make_unique<EmbreeRenderer>(scene, view.camera);
 }
 
-// The two must show the same. Ours is kept in the current folder.
+// The two must show the same. Ours is kept.
 void compare(const FrameDuel& duel, const EmbreeRenderer& theirs, ImageSize size,
              const std::string& name, Report& report) {
     const RenderedFrame frame = render(duel.accel, duel.view.camera, size, duel.settings);

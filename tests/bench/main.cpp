@@ -6,6 +6,7 @@
 #include "tests/bench/report.h"
 
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <stdexcept>
 
@@ -40,6 +41,15 @@ int run_all(const Options& options) {
     return report.finish();
 }
 
+// What is unpacked and written stays in the build folder, wherever a run was started.
+void enter_folder(Options& options) {
+    for (std::filesystem::path* file : {&options.json, &options.models, &options.program}) {
+        if (!file->empty()) *file = std::filesystem::absolute(*file);
+    }
+    std::filesystem::create_directories(options.folder);
+    std::filesystem::current_path(options.folder);
+}
+
 // --weigh=MODEL,BUILDER among the words; "" if it isn't.
 std::string weighed(std::vector<std::string>& words) {
     const std::string start = "--weigh=";
@@ -60,7 +70,8 @@ int run_words(std::vector<std::string> words) {
         }
     }
     const std::string what = weighed(words);
-    const Options options = parse_options(words);
+    Options options = parse_options(words);
+    enter_folder(options);
     if (what.empty()) return run_all(options);
     const std::size_t comma = what.find(',');
     return build_and_weigh(what.substr(0, comma), what.substr(comma + 1), options);

@@ -16,7 +16,8 @@ struct Options {
     int rounds = 5;
     std::filesystem::path json;  // empty: none
     std::filesystem::path models = RAYPICK_MODELS;
-    std::filesystem::path program = RAYPICK_PROGRAM;  // raypick itself; empty: was not built
+    std::filesystem::path program = RAYPICK_PROGRAM;      // raypick itself; empty: was not built
+    std::filesystem::path folder = RAYPICK_BENCH_FOLDER;  // what a run writes goes there
     ImageSize size{1080, 1920};
     std::string isa;  // "avx2": both sides leave AVX-512 alone
 };

@@ -22,7 +22,7 @@ struct View {
 };
 
 // The file of bunny, sponza, kitchen, scopia, balls or rings. scopia is unpacked first, into the
-// current folder. Nothing, with a word to the report, if it is not there.
+// run's folder. Nothing, with a word to the report, if it is not there.
 std::optional<std::filesystem::path> model_file(const std::string& name, Report& report);
 
 // One of those as it is measured. So that Embree can have the same: both sides of all surfaces,
