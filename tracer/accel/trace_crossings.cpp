@@ -49,18 +49,11 @@ RayMask cross_chunk(const AccelState& state, std::span<const Ray> rays, const Cl
                     const RayQuery& query, const glm::vec3* end, CrossingRoom& room) {
     const Chunk chunk(state, rays, query);
     RayMask blocked = 0;
-    GroupBack back;
     for (const RayMask mask : chunk.octants) {
         if (mask == 0) continue;
         CrossingsOfGroup search(*state.scene, clear, room.perhaps, room.hits);
         search.limits = chunk.limits;
-        GroupTrace trace(state, rays, query, search);
-        if (end != nullptr &&
-            back.set(chunk.world, chunk.limits, mask, *end, state.reach, search.back)) {
-            trace.run_back(back, mask);
-        } else {
-            trace.run(chunk.world, mask);
-        }
+        GroupTrace(state, rays, query, search).run_towards(chunk, mask, end);
         decide_crossed({state, rays, query, search});
         blocked |= search.blocked;
     }

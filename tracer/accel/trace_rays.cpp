@@ -114,18 +114,11 @@ void any_of_chunk(const AccelState& state, std::span<const Ray> rays,
                   std::span<std::uint8_t> blocked, const RayQuery& query, const glm::vec3* end) {
     const Chunk chunk(state, rays, query);
     RayMask found = 0;
-    GroupBack back;
     for (const RayMask mask : chunk.octants) {
         if (mask == 0) continue;
         AnyOfGroup search;
         search.limits = chunk.limits;
-        GroupTrace trace(state, rays, query, search);
-        if (end != nullptr &&
-            back.set(chunk.world, chunk.limits, mask, *end, state.reach, search.back)) {
-            trace.run_back(back, mask);
-        } else {
-            trace.run(chunk.world, mask);
-        }
+        GroupTrace(state, rays, query, search).run_towards(chunk, mask, end);
         found |= search.blocked;
     }
     found |= any_one_by_one(state, chunk.alone, rays, query);

@@ -43,12 +43,6 @@ struct CrossingWork {
     }
 };
 
-struct CrossingLane {
-    std::size_t ray = 0;
-    std::uint32_t object = 0;  // index
-    std::uint32_t primitive = 0;
-};
-
 // Rays with an element each. `Set` is the objects' shape; see SoleElements for the others.
 template <typename Set, typename Pairs, typename Decided>
 class CrossedElements {
@@ -64,7 +58,7 @@ public:
         const auto element = element_of(scene, *set, perhaps.primitive);
         each_ray(perhaps.rays, [&](std::size_t ray) HWY_ATTR {
             pairs_.set(count_, object_ray(instance, work_.rays[ray]), element);
-            lanes_[count_++] = {ray, perhaps.object, perhaps.primitive};
+            lanes_[count_++] = {static_cast<std::uint32_t>(ray), perhaps.object, perhaps.primitive};
             if (count_ == kDoublesAtOnce) decide();
         });
         return true;
@@ -81,6 +75,7 @@ public:
         const std::uint32_t known = decided.ordinary & decided.enters_by_side &
                                     decided.leaves_by_side & enters.ordinary & leaves.ordinary;
         for (std::size_t lane = 0; lane < count_; ++lane) {
+            if (((decided.misses >> lane) & 1) != 0) continue;
             if (((known >> lane) & 1) == 0) {
                 work_.by_scalar(lanes_[lane].ray, lanes_[lane].object, lanes_[lane].primitive);
                 continue;
@@ -102,7 +97,7 @@ private:
 
     const CrossingWork& work_;
     Pairs pairs_;
-    std::array<CrossingLane, kDoublesAtOnce> lanes_{};
+    std::array<RayAndPrimitive, kDoublesAtOnce> lanes_;
     std::size_t count_ = 0;
 };
 
@@ -128,7 +123,7 @@ public:
         each_ray(perhaps.rays, [&](std::size_t ray) HWY_ATTR {
             set_ray(instance, work_.rays[ray], count_, pairs_);
             pairs_.set_corners(count_, a, b, c);
-            lanes_[count_++] = {ray, perhaps.object, perhaps.primitive};
+            lanes_[count_++] = {static_cast<std::uint32_t>(ray), perhaps.object, perhaps.primitive};
             if (count_ == kDoublesAtOnce) decide();
         });
         return true;
@@ -152,7 +147,7 @@ private:
     const CrossingWork& work_;
     TrianglePairs pairs_;
     TriangleAnswers answers_;
-    std::array<CrossingLane, kDoublesAtOnce> lanes_{};
+    std::array<RayAndPrimitive, kDoublesAtOnce> lanes_;
     std::size_t count_ = 0;
 };
 

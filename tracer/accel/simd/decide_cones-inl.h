@@ -45,7 +45,8 @@ class ConesDecided {
 public:
     // Of each lane where the ray enters and leaves the body, and whether by the side; as masks.
     // `ordinary` are those that hit and that no special case of cone_roots concerns: what is said
-    // of the others means nothing, but that some surely miss.
+    // of the others means nothing, but that those in `misses` miss. Of cones these aren't told
+    // apart.
     std::uint32_t ordinary = 0;
     std::uint32_t misses = 0;
     std::uint32_t enters_by_side = 0;

@@ -25,16 +25,17 @@ struct Candidate {
     TriangleCorners corners;
 };
 
+// A ray of a group, and what it may hit. Without defaults, as most are never used.
+struct RayAndPrimitive {
+    std::uint32_t ray;
+    std::uint32_t object;  // index
+    std::uint32_t primitive;
+};
+
 // The closest hits of a group. What float bounds make sure of needs no more than its number until
 // the end: then the one scalar test works out its t. A ray's first such candidate, or one that
 // surely stands before it, is kept in place; others that may win as well are `rivals`.
 struct ClosestOfGroup {
-    // Without defaults, as most are never used.
-    struct Rival {
-        std::uint32_t ray;
-        std::uint32_t object;  // index
-        std::uint32_t primitive;
-    };
     static constexpr std::size_t kMostRivals = 256;
     static constexpr std::uint32_t kMostCandidates = 128;
 
@@ -46,7 +47,7 @@ struct ClosestOfGroup {
     RayMask found = 0;  // rays with a candidate
     RayMask rivalled = 0;
     RayMask lost = 0;  // rays with too many rivals, to be traced one by one
-    std::array<Rival, kMostRivals> rivals;
+    std::array<RayAndPrimitive, kMostRivals> rivals;
     std::size_t rival_count = 0;
 
     [[nodiscard]] const GroupLimits& limits_in(const GroupSpace& /*space*/) const { return limits; }

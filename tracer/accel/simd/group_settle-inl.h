@@ -140,7 +140,7 @@ private:
         } else if (!instance.holes) {
             auto& later = open_like(shape);
             each_ray(mask, [&](std::size_t i) HWY_ATTR {
-                later.add({i, object, primitive});
+                later.add({static_cast<std::uint32_t>(i), object, primitive});
                 if (later.full()) decide_open(later);
             });
             return;
@@ -194,9 +194,9 @@ private:
 
     template <typename Elements>
     HWY_NOINLINE void decide_open(Elements& elements) {
-        elements.decide([&](const OpenElement& open, float t)
+        elements.decide([&](const RayAndPrimitive& open, float t)
                             HWY_ATTR { offer(open.ray, open.object, open.primitive, t); },
-                        [&](const OpenElement& open) HWY_ATTR {
+                        [&](const RayAndPrimitive& open) HWY_ATTR {
                             auto one = one_of(search_, open.ray, open.object);
                             trace_primitive(state_, open.object, open.primitive, rays_[open.ray],
                                             query_, one);

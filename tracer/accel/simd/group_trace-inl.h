@@ -16,6 +16,7 @@
 #include "tracer/accel/simd/group_spheres-inl.h"
 #include "tracer/accel/simd/group_triangles-inl.h"
 #include "tracer/accel/simd/interleaved-inl.h"
+#include "tracer/accel/simd/ray_chunk-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
 
 #include <cstddef>
@@ -46,7 +47,19 @@ public:
         settle_.decide_last();
     }
 
-    // The same backwards.
+    // The same of a chunk's rays; backwards if they end at `end`, which may be null. Of searches
+    // that have limits for both ways.
+    void run_towards(const Chunk& chunk, RayMask mask, const glm::vec3* end) {
+        GroupBack back;  // NOLINT: not initialised, as it is large
+        if (end != nullptr &&
+            back.set(chunk.world, chunk.limits, mask, *end, state_.reach, search_.back)) {
+            run_back(back, mask);
+        } else {
+            run(chunk.world, mask);
+        }
+    }
+
+private:
     void run_back(const GroupBack& back, RayMask mask) {
         for (const std::uint32_t object : state_.unbounded)
             each_on_its_own({object, {}}, mask);
@@ -55,7 +68,6 @@ public:
         settle_.decide_last();
     }
 
-private:
     void enter_world(const GroupSpace& world, RayMask mask) {
         walk_group(
             state_.top, state_.top.root, world, search_.limits_in(world), mask,

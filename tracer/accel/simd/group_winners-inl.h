@@ -26,7 +26,7 @@ inline void choose(const AccelState& state, const ClosestOfGroup& search, std::s
             trace_primitive(state, candidate.object, candidate.primitive, from, query, one);
         }
         for (std::size_t i = 0; i < search.rival_count; ++i) {
-            const ClosestOfGroup::Rival& rival = search.rivals[i];
+            const RayAndPrimitive& rival = search.rivals[i];
             if (rival.ray != ray) continue;
             trace_primitive(state, rival.object, rival.primitive, from, query, one);
         }

@@ -22,14 +22,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
 
-// A ray with an element, and where it hits.
-struct OpenElement {
-    std::size_t ray;
-    std::uint32_t object;  // index
-    std::uint32_t primitive;
-};
-
-// Up to kDoublesAtOnce of them. `Set` is the objects' shape; see SoleElements for the others.
+// Up to kDoublesAtOnce rays with an element each. `Set` is the objects' shape; see SoleElements for
+// the others.
 template <typename Set, typename Pairs, typename Decided>
 class OpenElements {
 public:
@@ -40,7 +34,7 @@ public:
     [[nodiscard]] bool full() const { return count_ == kDoublesAtOnce; }
 
     // Of an object without holes.
-    HWY_INLINE void add(const OpenElement& open) {
+    HWY_INLINE void add(const RayAndPrimitive& open) {
         const Scene& scene = *state_.scene;
         const auto* set = std::get_if<Set>(&scene.objects[open.object].shape);
         pairs_.set(count_, object_ray(state_.instances[open.object], rays_[open.ray]),
@@ -118,7 +112,7 @@ private:
     const AccelState& state_;
     std::span<const Ray> rays_;
     const RayQuery& query_;
-    std::array<OpenElement, kDoublesAtOnce> open_;
+    std::array<RayAndPrimitive, kDoublesAtOnce> open_;
     std::size_t count_ = 0;
     Pairs pairs_;
 };
