@@ -173,7 +173,7 @@ TEST_P(LitPointsBy, AreThoseOfLitPointToTheBit) {
 }
 
 // Normals lean, so that some mirrored rays would lead into the surface, and incoming rays come from
-// everywhere.
+// everywhere; some along the surface, which they leave on its outside.
 TEST_P(LitPointsBy, MirrorAsBranchesDo) {
     ShadeScene scene;
     std::vector<End> ends = random_ends(500);
@@ -182,6 +182,10 @@ TEST_P(LitPointsBy, MirrorAsBranchesDo) {
         ends[i].kind.reflect = ends[i].material.reflect = glm::vec3(0.5f);
         if (i % 5 == 0) ends[i].normal = glm::vec3(Random(i).direction());
         if (i % 9 == 0) ends[i].incoming = ends[i].normal;
+        if (i % 13 < 2) {
+            ends[i].surface.geometric_normal = ends[i].normal = {0.0f, 1.0f, 0.0f};
+            ends[i].incoming = {1.0f, 0.0f, 0.0f};
+        }
         points.add(static_cast<std::uint32_t>(i), ends[i].point(), ends[i].own);
         if (i / 16 % 3 != 0) points.want_mirrored(i);
     }
