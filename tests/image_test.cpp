@@ -243,18 +243,34 @@ std::vector<T> channel(Imf::InputFile& in, const char* name, Imf::PixelType type
     return values;
 }
 
-TEST_F(ImageFiles, ExrIsReadBack) {
-    const Image image = random_image({9, 13});
-    write_image(image, file("a.exr"));
-    Imf::InputFile in(file("a.exr").c_str());
+std::vector<std::string> channel_names(const Imf::InputFile& in) {
     std::vector<std::string> found;
     for (auto i = in.header().channels().begin(); i != in.header().channels().end(); ++i) {
         found.emplace_back(i.name());
         const bool id = found.back().ends_with("_id");
         EXPECT_EQ(i.channel().type, id ? Imf::UINT : Imf::FLOAT) << found.back();
     }
-    EXPECT_THAT(found, testing::UnorderedElementsAre("R", "G", "B", "Z", "N.X", "N.Y", "N.Z",
-                                                     "object_id", "primitive_id"));
+    return found;
+}
+
+TEST_F(ImageFiles, AnExrHasTheChannelsThatTheImageHas) {
+    const Image all = random_image({3, 4});
+    const Image colour{all.size, all.colour, {}, {}, {}, {}};
+    write_image(colour, file("a.exr"));
+    Imf::InputFile in(file("a.exr").c_str());
+    EXPECT_THAT(channel_names(in), testing::UnorderedElementsAre("R", "G", "B"));
+    const std::vector<float> green = channel<float>(in, "G", Imf::FLOAT);
+    for (std::size_t i = 0; i < all.colour.size(); ++i)
+        EXPECT_EQ(green[i], all.colour[i].y);
+}
+
+TEST_F(ImageFiles, ExrIsReadBack) {
+    const Image image = random_image({9, 13});
+    write_image(image, file("a.exr"));
+    Imf::InputFile in(file("a.exr").c_str());
+    EXPECT_THAT(channel_names(in),
+                testing::UnorderedElementsAre("R", "G", "B", "Z", "N.X", "N.Y", "N.Z", "object_id",
+                                              "primitive_id"));
     EXPECT_EQ(in.header().dataWindow().max.x, 12);
     EXPECT_EQ(in.header().dataWindow().max.y, 8);
     const auto colour =

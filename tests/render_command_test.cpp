@@ -58,6 +58,7 @@ TEST_F(RenderCommand, StatsAreOneJsonObjectWithTheDocumentedKeys) {
     for (const auto& [key, value] : stats["memory_bytes"].items()) {
         EXPECT_TRUE(value.is_number_unsigned()) << key;
     }
+    EXPECT_EQ(stats["memory_bytes"]["image"], 12 * 64 * 48) << "a PNG shows the colour alone";
     EXPECT_GT(stats["memory_bytes"]["peak"].get<double>(), 1e6);
 }
 

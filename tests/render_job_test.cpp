@@ -239,6 +239,26 @@ RenderPlan coarse_by(int step) {
     return plan;
 }
 
+// What a job shows that was stopped at its coarse image.
+FrameSnapshot coarse_frame(const std::shared_ptr<const Accel>& accel, RenderPlan plan) {
+    RenderJob* self = nullptr;
+    std::mutex made;
+    std::unique_lock lock(made);
+    plan.on_coarse = [&] {
+        const std::lock_guard wait(made);
+        self->cancel();
+    };
+    RenderJob job(accel, mixed_camera(), kOdd, {}, plan);
+    self = &job;
+    lock.unlock();
+    job.wait();
+    FrameSnapshot frame;
+    EXPECT_TRUE(job.snapshot(frame));
+    EXPECT_TRUE(frame.traced.empty());
+    EXPECT_GT(job.progress().coarse_seconds, 0.0);
+    return frame;
+}
+
 TEST(RenderJob, TheImageIsTheSameForAnyCoarseImageBeforeIt) {
     const auto accel = shared_accel(mixed_scene());
     for (const Sampling sampling :
@@ -260,29 +280,58 @@ TEST(RenderJob, TheImageIsTheSameForAnyCoarseImageBeforeIt) {
     }
 }
 
+TEST(RenderJob, AnImageOfColourAloneHasTheSameColours) {
+    const auto accel = shared_accel(mixed_scene());
+    for (const Sampling sampling :
+         {Sampling::centre, Sampling::corners, Sampling::stratified, Sampling::adaptive}) {
+        RenderSettings settings;
+        settings.sampling = sampling;
+        settings.samples = 2;
+        const RenderedFrame wanted = render(accel, mixed_camera(), kOdd, settings);
+        Image colour{kOdd, wanted.image.colour, {}, {}, {}, {}};
+        const RenderedFrame frame = render(accel, mixed_camera(), kOdd, settings, Channels::colour);
+        expect_same(frame.image, colour);
+        EXPECT_EQ(frame.rays, wanted.rays);
+
+        RenderPlan plan = coarse_by(5);
+        plan.channels = Channels::colour;
+        RenderJob job(accel, mixed_camera(), kOdd, settings, plan);
+        job.wait();
+        FrameSnapshot snapshot;
+        ASSERT_TRUE(job.snapshot(snapshot));
+        expect_same(snapshot.image, colour);
+        expect_same(snapshot.whole(), colour);
+        EXPECT_EQ(job.progress().rays, wanted.rays);
+        expect_same(job.take_image(), colour);
+    }
+}
+
+TEST(RenderJob, ACoarseImageOfColourAloneFillsTheFrame) {
+    const auto accel = shared_accel(mixed_scene());
+    RenderPlan plan = coarse_by(8);
+    plan.channels = Channels::colour;
+    const FrameSnapshot frame = coarse_frame(accel, plan);
+    const Image whole = frame.whole();
+    const Image wanted = render(accel, mixed_camera(), kOdd, {}).image;
+    ASSERT_EQ(whole.colour.size(), kOdd.pixel_count());
+    EXPECT_TRUE(whole.depth.empty() && whole.normal.empty());
+    EXPECT_TRUE(whole.object.empty() && whole.primitive.empty());
+    for (int row = 0; row < kOdd.rows; ++row) {
+        for (int col = 0; col < kOdd.cols; ++col) {
+            const std::size_t from = kOdd.index(frame.sampled_pixel({row, col}));
+            ASSERT_EQ(whole.colour[kOdd.index({row, col})], wanted.colour[from]);
+        }
+    }
+}
+
 // Stopped at the coarse image, what is shown is the final image's pixels, each over its block.
 TEST(RenderJob, TheCoarseImageIsMadeOfTheFinalOnesPixels) {
     const auto accel = shared_accel(mixed_scene());
     const Image wanted = render(accel, mixed_camera(), kOdd, {}).image;
     for (const int step : {1, 3, 8, 200}) {
         SCOPED_TRACE(step);
-        RenderJob* self = nullptr;
-        std::mutex made;
-        std::unique_lock lock(made);
-        RenderPlan plan = coarse_by(step);
-        plan.on_coarse = [&] {
-            const std::lock_guard wait(made);
-            self->cancel();
-        };
-        RenderJob job(accel, mixed_camera(), kOdd, {}, plan);
-        self = &job;
-        lock.unlock();
-        job.wait();
-        FrameSnapshot frame;
-        ASSERT_TRUE(job.snapshot(frame));
-        EXPECT_TRUE(frame.traced.empty());
+        const FrameSnapshot frame = coarse_frame(accel, coarse_by(step));
         EXPECT_EQ(frame.image.size, (ImageSize{(97 + step - 1) / step, (131 + step - 1) / step}));
-        EXPECT_GT(job.progress().coarse_seconds, 0.0);
         const Image whole = frame.whole();
         ASSERT_EQ(whole.size, kOdd);
         for (int row = 0; row < kOdd.rows; ++row) {

@@ -43,7 +43,7 @@ Contender our_frame(const FrameDuel& duel, ImageSize size, int threads) {
     return {"ours", [&duel, size, threads] {
                 return seconds_of([&] {
                     render(duel.accel, duel.view.camera, size,
-                           with_threads(duel.settings, threads));
+                           with_threads(duel.settings, threads), Channels::colour);
                 });
             }};
 }

@@ -19,7 +19,7 @@ Pixel block_sample(Pixel block, int step, ImageSize size);
 
 struct CoarseImage {
     CoarseImage() = default;
-    CoarseImage(ImageSize frame_size, int block_step);
+    CoarseImage(ImageSize frame_size, int block_step, Channels channels);
 
     ImageSize size;  // the frame's
     int step = 1;
@@ -27,7 +27,7 @@ struct CoarseImage {
     std::vector<std::uint8_t> broken;  // per block: 1 if it came out as no number
 };
 
-// Each block filled with its sample.
+// Each block filled with its sample. Both have the same channels.
 void fill_tile(const Image& blocks, int step, const Tile& tile, Image& image);
 
 // If `pixel` of the frame is a block's sample: sets that number of the part to it and says true.

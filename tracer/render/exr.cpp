@@ -40,14 +40,18 @@ void write_exr_file(const Image& image, const std::filesystem::path& file,
         vector("R", &image.colour[0].x);
         vector("G", &image.colour[0].y);
         vector("B", &image.colour[0].z);
-        vector("N.X", &image.normal[0].x);
-        vector("N.Y", &image.normal[0].y);
-        vector("N.Z", &image.normal[0].z);
-        add_channel(header, frame, "Z", Imf::FLOAT, image.depth.data(), sizeof(float), cols);
-        add_channel(header, frame, "object_id", Imf::UINT, image.object.data(),
-                    sizeof(std::uint32_t), cols);
-        add_channel(header, frame, "primitive_id", Imf::UINT, image.primitive.data(),
-                    sizeof(std::uint32_t), cols);
+        if (!image.normal.empty()) {
+            vector("N.X", &image.normal[0].x);
+            vector("N.Y", &image.normal[0].y);
+            vector("N.Z", &image.normal[0].z);
+        }
+        const auto number = [&](const char* name, Imf::PixelType type, const auto& channel) {
+            if (channel.empty()) return;
+            add_channel(header, frame, name, type, channel.data(), sizeof(channel[0]), cols);
+        };
+        number("Z", Imf::FLOAT, image.depth);
+        number("object_id", Imf::UINT, image.object);
+        number("primitive_id", Imf::UINT, image.primitive);
         errno = 0;
         Imf::OutputFile out(file.c_str(), header);
         out.setFrameBuffer(frame);

@@ -25,12 +25,12 @@ std::string lower_extension(const std::filesystem::path& file) {
 
 }  // namespace
 
-Image make_image(ImageSize size, int threads) {
+Image make_image(ImageSize size, Channels channels, int threads) {
     const std::size_t count = size.pixel_count();
     Image image;
     image.size = size;
     const auto fill = [&](std::size_t channel) {
-        switch (channel) {  // the largest first
+        switch (channel) {  // the colour, then the largest
             case 0:
                 return fill_large(image.colour, count, glm::vec3(0.0f));
             case 1:
@@ -43,12 +43,12 @@ Image make_image(ImageSize size, int threads) {
                 return fill_large(image.primitive, count, 0xffffffffu);
         }
     };
-    constexpr std::size_t kChannels = 5;
+    const std::size_t wanted = channels == Channels::all ? 5 : 1;
     if (threads == 1) {
-        for (std::size_t channel = 0; channel < kChannels; ++channel)
+        for (std::size_t channel = 0; channel < wanted; ++channel)
             fill(channel);
     } else {
-        parallel_for(kChannels, threads, {}, fill);
+        parallel_for(wanted, threads, {}, fill);
     }
     return image;
 }

@@ -141,7 +141,9 @@ void RenderJob::State::run_passes() {
             break;
         case Sampling::corners:
             each_tile([this](const Tile& tile) {
-                publish(trace_corners(tracer, tile, stop.get_token()), Piece::whole);
+                TilePart part(tile, plan.channels);
+                trace_corners(tracer, part, stop.get_token());
+                publish(part, Piece::whole);
             });
             break;
         case Sampling::stratified:
@@ -161,13 +163,14 @@ void RenderJob::State::trace_coarse() {
     // So many blocks make rays that are worth to be traced together.
     constexpr int kBlocks = 16;
     {
-        CoarseImage empty(tracer.size(), plan.coarse_step);
+        CoarseImage empty(tracer.size(), plan.coarse_step, plan.channels);
         const std::lock_guard lock(mutex);
         coarse = std::move(empty);
     }
     RayCounts counts;
     each_tile(tiles_from_centre(coarse.image.size, kBlocks), [&](const Tile& tile) {
-        const TilePart part = trace_blocks(tracer, tile, coarse.step, stop.get_token());
+        TilePart part(tile, plan.channels);
+        trace_blocks(tracer, coarse.step, part, stop.get_token());
         const std::lock_guard lock(mutex);
         copy_tile(part.image, tile, coarse.image);
         copy_tile(part.broken, tile, coarse.broken, coarse.image.size);
@@ -189,7 +192,7 @@ void RenderJob::State::show_coarse(const RayCounts& counts) {
 // Not before the coarse image is shown: nobody waits for this one so soon.
 void RenderJob::State::begin_image() {
     const ImageSize size = tracer.size();
-    image = make_image(size, tracer.settings().threads);
+    image = make_image(size, plan.channels, tracer.settings().threads);
     done.assign(size.pixel_count(), 0);
     broken.assign(size.pixel_count(), 0);
     if (plan.progressive) {
@@ -203,7 +206,9 @@ void RenderJob::State::begin_image() {
 void RenderJob::State::trace_centre_pass() {
     const CoarseImage* known = plan.progressive ? &coarse : nullptr;
     each_tile([&](const Tile& tile) {
-        publish(trace_centres(tracer, tile, known, stop.get_token()), Piece::whole);
+        TilePart part(tile, plan.channels);
+        trace_centres(tracer, known, part, stop.get_token());
+        publish(part, Piece::whole);
     });
 }
 
@@ -229,7 +234,7 @@ void RenderJob::State::choose_refined(const Tile& tile) {
 
 // What the pixels show before these samples.
 TilePart RenderJob::State::begun_part(const Tile& tile, bool first_pass) const {
-    TilePart part(tile);
+    TilePart part(tile, plan.channels);
     if (first_pass) {
         look_at_centres(tracer, part, stop.get_token());
         return part;
@@ -316,7 +321,7 @@ Pixel FrameSnapshot::sampled_pixel(Pixel pixel) const {
 
 Image FrameSnapshot::whole() const {
     if (image.size == size) return image;
-    Image filled = make_image(size);
+    Image filled = make_image(size, image.depth.empty() ? Channels::colour : Channels::all);
     fill_tile(image, step, {0, size.rows, 0, size.cols}, filled);
     return filled;
 }
@@ -377,7 +382,8 @@ bool RenderJob::snapshot(FrameSnapshot& frame) const {
 
 Image RenderJob::take_image() {
     wait();
-    return state_->whole ? std::move(state_->image) : make_image(state_->tracer.size());
+    return state_->whole ? std::move(state_->image)
+                         : make_image(state_->tracer.size(), state_->plan.channels);
 }
 
 const Camera& RenderJob::camera() const {
@@ -388,8 +394,9 @@ ImageSize RenderJob::size() const {
 }
 
 RenderedFrame render(std::shared_ptr<const Accel> accel, const Camera& camera, ImageSize size,
-                     const RenderSettings& settings) {
-    RenderJob job(std::move(accel), camera, size, settings, {.progressive = false});
+                     const RenderSettings& settings, Channels channels) {
+    RenderJob job(std::move(accel), camera, size, settings,
+                  {.progressive = false, .channels = channels});
     job.wait();
     RenderedFrame frame;
     const RenderProgress progress = job.progress();

@@ -21,9 +21,10 @@ struct RenderProgress {
     double seconds = 0.0;         // since the start; stops at the end
     double coarse_seconds = 0.0;  // from the start to the coarse image; 0: it is not there
     RayCounts rays;
-    std::uint64_t nan_pixels = 0;  // whose colour or normal is no number; 0 in the image
-    std::uint64_t version = 0;     // grows whenever the image changed; 0: no whole image yet
-    bool finished = false;         // ended for whatever reason
+    // Whose colour, or normal if the image has them, is no number; 0 in the image.
+    std::uint64_t nan_pixels = 0;
+    std::uint64_t version = 0;  // grows whenever the image changed; 0: no whole image yet
+    bool finished = false;      // ended for whatever reason
     bool cancelled = false;
 };
 
@@ -44,11 +45,12 @@ struct FrameSnapshot {
     [[nodiscard]] Image whole() const;
 };
 
-// How a job goes about its frame. The finished image is bit for bit the same for all.
+// How a job goes about its frame. What the finished image holds is bit for bit the same for all.
 struct RenderPlan {
     bool progressive = true;            // there is somebody who watches
     int coarse_step = 8;                // side of a block of the coarse image, pixels
     std::function<void()> on_coarse{};  // called from a worker once the coarse image is there
+    Channels channels = Channels::all;  // of the image and its snapshots
 };
 
 // Traces one frame on worker threads, in tiles from the centre outwards. The finished image is bit
@@ -102,6 +104,6 @@ struct RenderedFrame {
     double seconds = 0.0;
 };
 RenderedFrame render(std::shared_ptr<const Accel> accel, const Camera& camera, ImageSize size,
-                     const RenderSettings& settings);
+                     const RenderSettings& settings, Channels channels = Channels::all);
 
 }  // namespace raypick

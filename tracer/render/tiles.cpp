@@ -66,8 +66,8 @@ std::vector<Pixel> pixels_in_blocks(ImageSize size) {
     return pixels;
 }
 
-TilePart::TilePart(const Tile& where)
-    : tile(where), image(make_image(where.size())), broken(image.size.pixel_count(), 0) {}
+TilePart::TilePart(const Tile& where, Channels channels)
+    : tile(where), image(make_image(where.size(), channels)), broken(image.size.pixel_count(), 0) {}
 
 void copy_tile(const Image& from, const Tile& tile, Image& to) {
     copy_tile(from.colour, tile, to.colour, to.size);

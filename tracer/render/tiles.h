@@ -37,18 +37,20 @@ std::vector<Pixel> pixels_in_blocks(ImageSize size);
 
 // What one thread made of a tile.
 struct TilePart {
-    explicit TilePart(const Tile& where);
+    explicit TilePart(const Tile& where, Channels channels = Channels::all);
 
     // Pixels by their number in the tile. A colour or a normal that is not finite is kept as 0, and
     // the pixel counts as broken.
     void set(std::size_t pixel, const TracedRay& traced) {
         set_colour(pixel, traced.colour);
-        if (!traced.hit.valid()) return;
+        if (!has_all() || !traced.hit.valid()) return;
         image.depth[pixel] = traced.hit.t;
         image.object[pixel] = traced.hit.object;
         image.primitive[pixel] = traced.hit.primitive;
         image.normal[pixel] = checked(pixel, traced.normal);
     }
+    // Else the colour alone.
+    [[nodiscard]] bool has_all() const { return !image.depth.empty(); }
     void set_colour(std::size_t pixel, const glm::vec3& colour) {
         image.colour[pixel] = checked(pixel, colour);
     }
@@ -70,11 +72,11 @@ private:
     }
 };
 
-// Writes a tile's channel into that of the image.
+// Writes a tile's channel into that of the image, or nothing if it is empty.
 template <typename T>
 void copy_tile(const std::vector<T>& from, const Tile& tile, std::vector<T>& to, ImageSize size) {
     const ImageSize small = tile.size();
-    for (int row = 0; row < small.rows; ++row) {
+    for (int row = 0; row < small.rows && !from.empty(); ++row) {
         const auto first = from.begin() + static_cast<std::ptrdiff_t>(small.index({row, 0}));
         const std::size_t target = size.index({tile.row_begin + row, tile.col_begin});
         std::copy(first, first + small.cols, to.begin() + static_cast<std::ptrdiff_t>(target));

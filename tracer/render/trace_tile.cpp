@@ -40,24 +40,22 @@ std::vector<glm::vec3> corner_colours(const PixelTracer& tracer, const Tile& til
 
 }  // namespace
 
-TilePart trace_blocks(const PixelTracer& tracer, const Tile& tile, int step,
-                      const std::stop_token& stop) {
-    TilePart part(tile);
-    const std::vector<Pixel> blocks = pixels_in_blocks(tile.size());
+void trace_blocks(const PixelTracer& tracer, int step, TilePart& part,
+                  const std::stop_token& stop) {
+    const std::vector<Pixel> blocks = pixels_in_blocks(part.image.size);
     std::vector<Pixel> samples;
     samples.reserve(blocks.size());
     for (const Pixel& block : blocks)
-        samples.push_back(block_sample(tile.in_image(block), step, tracer.size()));
+        samples.push_back(block_sample(part.tile.in_image(block), step, tracer.size()));
     LargeArray<TracedRay> traced(blocks.size());
     tracer.trace(tracer.centre_rays(samples).all(), traced, part.rays, stop);
     for (std::size_t i = 0; i < blocks.size(); ++i)
         part.set(part.image.size.index(blocks[i]), traced[i]);
-    return part;
 }
 
-TilePart trace_centres(const PixelTracer& tracer, const Tile& tile, const CoarseImage* coarse,
-                       const std::stop_token& stop) {
-    TilePart part(tile);
+void trace_centres(const PixelTracer& tracer, const CoarseImage* coarse, TilePart& part,
+                   const std::stop_token& stop) {
+    const Tile& tile = part.tile;
     std::vector<Pixel> pixels = pixels_in_blocks(part.image.size);
     if (coarse != nullptr) {
         std::erase_if(pixels, [&](const Pixel& pixel) {
@@ -68,10 +66,10 @@ TilePart trace_centres(const PixelTracer& tracer, const Tile& tile, const Coarse
     tracer.trace(centre_rays(tracer, tile, pixels).all(), traced, part.rays, stop);
     for (std::size_t i = 0; i < pixels.size(); ++i)
         part.set(part.image.size.index(pixels[i]), traced[i]);
-    return part;
 }
 
 void look_at_centres(const PixelTracer& tracer, TilePart& part, const std::stop_token& stop) {
+    if (!part.has_all()) return;
     const std::vector<Pixel> pixels = pixels_in_blocks(part.image.size);
     LargeArray<TracedRay> seen(pixels.size());
     tracer.look(centre_rays(tracer, part.tile, pixels).all(), seen, stop);
@@ -81,11 +79,10 @@ void look_at_centres(const PixelTracer& tracer, TilePart& part, const std::stop_
     }
 }
 
-TilePart trace_corners(const PixelTracer& tracer, const Tile& tile, const std::stop_token& stop) {
-    TilePart part(tile);
+void trace_corners(const PixelTracer& tracer, TilePart& part, const std::stop_token& stop) {
     const ImageSize size = part.image.size;
     const ImageSize corners{size.rows + 1, size.cols + 1};
-    const std::vector<glm::vec3> colours = corner_colours(tracer, tile, part.rays, stop);
+    const std::vector<glm::vec3> colours = corner_colours(tracer, part.tile, part.rays, stop);
     look_at_centres(tracer, part, stop);
     for (int row = 0; row < size.rows; ++row) {
         for (int col = 0; col < size.cols; ++col) {
@@ -96,7 +93,6 @@ TilePart trace_corners(const PixelTracer& tracer, const Tile& tile, const std::s
                                      colours[corners.index({row + 1, col + 1})]));
         }
     }
-    return part;
 }
 
 void add_samples(const PixelTracer& tracer, const Tile& tile, const std::vector<Pixel>& pixels,

@@ -15,19 +15,18 @@ namespace raypick {
 // What follows is worthless once `stop` is requested.
 
 // One ray for each block of `step` x `step` pixels, of a tile of the coarse image.
-TilePart trace_blocks(const PixelTracer& tracer, const Tile& tile, int step,
-                      const std::stop_token& stop);
+void trace_blocks(const PixelTracer& tracer, int step, TilePart& part, const std::stop_token& stop);
 
 // One ray through each pixel's centre, but for those that `coarse` knows already (nullptr: none).
-TilePart trace_centres(const PixelTracer& tracer, const Tile& tile, const CoarseImage* coarse,
-                       const std::stop_token& stop);
+void trace_centres(const PixelTracer& tracer, const CoarseImage* coarse, TilePart& part,
+                   const std::stop_token& stop);
 
 // The mean of the rays through each pixel's corners, and what its centre shows in all channels but
 // the colour. Corners that two tiles share are traced by both, which costs a sixteenth, and counted
 // by one.
-TilePart trace_corners(const PixelTracer& tracer, const Tile& tile, const std::stop_token& stop);
+void trace_corners(const PixelTracer& tracer, TilePart& part, const std::stop_token& stop);
 
-// Sets all channels but the colour to what the pixels' centres show.
+// Sets all channels but the colour to what the pixels' centres show, if the part has them.
 void look_at_centres(const PixelTracer& tracer, TilePart& part, const std::stop_token& stop);
 
 // Adds one of the pattern's samples of each of these pixels, the tile's own, to its sum.

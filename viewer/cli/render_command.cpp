@@ -34,6 +34,11 @@ struct Frame {
     std::uint64_t accel_bytes = 0;
 };
 
+// PNG holds colour alone, of all that an image has.
+bool writes_png(const RenderCommand& command) {
+    return command.output == "-" || is_png_name(command.output);
+}
+
 void show_progress(const RenderJob& job, ProgressBar& bar) {
     for (RenderProgress progress = job.progress(); !progress.finished; progress = job.progress()) {
         const auto rays = static_cast<double>(progress.rays.total());
@@ -53,7 +58,8 @@ Frame traced(const RenderCommand& command, const OpenedScene& opened, const Came
         build_timed(opened, {.threads = command.settings.threads, .stop = interrupt.token()});
     bar.clear();
     if (command.scene.verbose) print_report(built);
-    const RenderPlan plan{.progressive = false};  // nobody looks at it before it is done
+    const RenderPlan plan{.progressive = false,  // nobody looks at it before it is done
+                          .channels = writes_png(command) ? Channels::colour : Channels::all};
     RenderJob job(built.accel, camera, command.size, command.settings, plan);
     const std::stop_callback cancel(interrupt.token(), [&job] { job.cancel(); });
     if (bar.visible()) show_progress(job, bar);
@@ -61,21 +67,14 @@ Frame traced(const RenderCommand& command, const OpenedScene& opened, const Came
     interrupt.check();
 
     Frame frame;
-    FrameSnapshot snapshot;
-    job.snapshot(snapshot);
-    frame.image = std::move(snapshot.image);
     const RenderProgress progress = job.progress();
     frame.rays = progress.rays;
     frame.nan_pixels = progress.nan_pixels;
     frame.build_seconds = built.build_seconds;
     frame.seconds = progress.seconds;
     frame.accel_bytes = built.accel->stats().bytes;
+    frame.image = job.take_image();
     return frame;
-}
-
-// PNG holds colour alone, of all that an image has.
-bool writes_png(const RenderCommand& command) {
-    return command.output == "-" || is_png_name(command.output);
 }
 
 Frame rasterized(const RenderCommand& command, const OpenedScene& opened, const Camera& camera,
@@ -180,11 +179,12 @@ void render_to(const RenderOutput& output, const RenderCommand& command,
     standard_output.flush();
 }
 
-// The tracer's image, a copy to write and the file's bytes. Found before loading, because asking
-// for too much memory may end in a process being killed instead of in an error.
-void check_memory(ImageSize size) {
-    constexpr double kBytesPerPixel = 80.0;
-    const double needed = kBytesPerPixel * static_cast<double>(size.pixel_count());
+// The image, what its pixels need while they are made, and the file's bytes. Found before loading,
+// because asking for too much memory may end in a process being killed instead of in an error.
+void check_memory(const RenderCommand& command) {
+    const ImageSize size = command.size;
+    const double bytes_per_pixel = writes_png(command) ? 32.0 : 80.0;
+    const double needed = bytes_per_pixel * static_cast<double>(size.pixel_count());
     const double installed =
         static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     if (needed <= installed) return;
@@ -197,7 +197,7 @@ void check_memory(ImageSize size) {
 }  // namespace
 
 int run_render(const RenderCommand& command) {
-    check_memory(command.size);
+    check_memory(command);
     const RenderOutput output(command.output, command.size);
     const Interrupt interrupt;
     try {
