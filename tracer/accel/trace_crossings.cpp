@@ -5,7 +5,6 @@
 #include "tracer/accel/simd/crossed_elements-inl.h"
 #include "tracer/accel/simd/group_crossings-inl.h"
 #include "tracer/accel/simd/group_trace-inl.h"
-#include "tracer/accel/simd/interleaved-inl.h"
 #include "tracer/accel/simd/ray_chunk-inl.h"
 #include "tracer/accel/trace_crossings.h"
 
@@ -27,20 +26,11 @@ struct CrossingRoom {
 // The mask's rays are usable.
 void cross_one_by_one(const AccelState& state, RayMask mask, std::span<const Ray> rays,
                       const RayQuery& query, CrossingsOfGroup& search) {
-    run_interleaved<CrossingsOfOne, kInterleaved>(
-        [&](Traversal<CrossingsOfOne>& traversal, std::size_t& ray) HWY_ATTR {
-            while (mask != 0) {
-                ray = take_ray(mask);
-                search.limits.t_far[ray] = rays[ray].t_max;
-                CrossingsOfOne one{search, ray};
-                trace_unbounded(state, rays[ray], query, one);
-                if (((search.blocked >> ray) & 1) != 0) continue;
-                traversal.start(state, rays[ray], query, one);
-                return true;
-            }
-            return false;
-        },
-        [](const Traversal<CrossingsOfOne>&, std::size_t) {});
+    each_ray(mask, [&](std::size_t ray) HWY_ATTR {
+        search.limits.t_far[ray] = rays[ray].t_max;
+        CrossingsOfOne one{search, ray};
+        trace_ray(state, from_origin(rays[ray]), query, one);
+    });
 }
 
 // The rays that are blocked; hits of all go into the room. `end`: where the rays end, if it is not
@@ -54,6 +44,13 @@ RayMask cross_chunk(const AccelState& state, std::span<const Ray> rays, const Cl
         CrossingsOfGroup search(*state.scene, clear, room.perhaps, room.hits);
         search.limits = chunk.limits;
         GroupTrace(state, rays, query, search).run_towards(chunk, mask, end);
+        decide_crossed({state, rays, query, search});
+        blocked |= search.blocked;
+    }
+    if (chunk.apart != 0) {
+        CrossingsOfGroup search(*state.scene, clear, room.perhaps, room.hits);
+        search.limits = chunk.limits;
+        RaysApart(state, rays, query, search).run(chunk.apart);
         decide_crossed({state, rays, query, search});
         blocked |= search.blocked;
     }

@@ -5,8 +5,8 @@
 #include "tracer/accel/searches.h"
 #include "tracer/accel/simd/group_trace-inl.h"
 #include "tracer/accel/simd/group_winners-inl.h"
-#include "tracer/accel/simd/interleaved-inl.h"
 #include "tracer/accel/simd/ray_chunk-inl.h"
+#include "tracer/accel/simd/rays_apart-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
 #include "tracer/accel/trace_rays.h"
 #include "tracer/error.h"
@@ -42,71 +42,35 @@ std::vector<Hit> all_hits(const AccelState& state, const Ray& ray, const RayQuer
 
 namespace {
 
-// The mask's rays are usable.
-void closest_one_by_one(const AccelState& state, RayMask mask, std::span<const Ray> rays,
-                        std::span<Hit> hits, const RayQuery& query) {
-    RayMask ambiguous = 0;
-    run_interleaved<ClosestSearch, kInterleaved>(
-        [&](Traversal<ClosestSearch>& traversal, std::size_t& ray) HWY_ATTR {
-            if (mask == 0) return false;
-            ray = take_ray(mask);
-            ClosestSearch closest(rays[ray].t_max);
-            trace_unbounded(state, rays[ray], query, closest);
-            traversal.start(state, rays[ray], query, closest);
-            return true;
-        },
-        [&](const Traversal<ClosestSearch>& traversal, std::size_t ray) HWY_ATTR {
-            hits[ray] = traversal.search().winner();
-            if (traversal.search().ambiguous()) ambiguous |= RayMask{1} << ray;
-        });
-    each_ray(ambiguous, [&](std::size_t ray) HWY_ATTR {
-        hits[ray] = HWY_NAMESPACE::closest_hit(state, rays[ray], query).value_or(Hit{});
-    });
-}
-
-RayMask any_one_by_one(const AccelState& state, RayMask mask, std::span<const Ray> rays,
-                       const RayQuery& query) {
-    RayMask found = 0;
-    run_interleaved<AnySearch, kInterleaved>(
-        [&](Traversal<AnySearch>& traversal, std::size_t& ray) HWY_ATTR {
-            while (mask != 0) {
-                ray = take_ray(mask);
-                AnySearch any(rays[ray].t_max);
-                trace_unbounded(state, rays[ray], query, any);
-                if (any.found()) {
-                    found |= RayMask{1} << ray;
-                    continue;
-                }
-                traversal.start(state, rays[ray], query, any);
-                return true;
-            }
-            return false;
-        },
-        [&](const Traversal<AnySearch>& traversal, std::size_t ray) HWY_ATTR {
-            if (traversal.search().found()) found |= RayMask{1} << ray;
-        });
-    return found;
-}
-
 void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::span<Hit> hits,
                       const RayQuery& query) {
     const Chunk chunk(state, rays, query);
     RayMask alone = chunk.alone;
     RayMask missed = ~RayMask{0};
-    for (const RayMask mask : chunk.octants) {
-        if (mask == 0) continue;
+    const auto find = [&](const auto& follow) HWY_ATTR {
         ClosestOfGroup search;
         search.limits = chunk.limits;
         search.candidate_from.fill(std::numeric_limits<float>::infinity());
-        GroupTrace(state, rays, query, search).run(chunk.world, mask);
+        follow(search);
         decide_winners(state, search, chunk.world, rays, query, hits);
         alone |= search.lost;
         missed &= ~(search.found | search.rivalled);
+    };
+    for (const RayMask mask : chunk.octants) {
+        if (mask == 0) continue;
+        find([&](ClosestOfGroup& search)
+                 HWY_ATTR { GroupTrace(state, rays, query, search).run(chunk.world, mask); });
+    }
+    if (chunk.apart != 0) {
+        find([&](ClosestOfGroup& search)
+                 HWY_ATTR { RaysApart(state, rays, query, search).run(chunk.apart); });
     }
     for (std::size_t ray = 0; ray < rays.size(); ++ray) {
         if (((missed >> ray) & 1) != 0) hits[ray] = Hit{};
     }
-    closest_one_by_one(state, alone, rays, hits, query);
+    each_ray(alone, [&](std::size_t ray) HWY_ATTR {
+        hits[ray] = HWY_NAMESPACE::closest_hit(state, rays[ray], query).value_or(Hit{});
+    });
 }
 
 // `end`: where the rays end, if it is not null.
@@ -114,14 +78,25 @@ void any_of_chunk(const AccelState& state, std::span<const Ray> rays,
                   std::span<std::uint8_t> blocked, const RayQuery& query, const glm::vec3* end) {
     const Chunk chunk(state, rays, query);
     RayMask found = 0;
-    for (const RayMask mask : chunk.octants) {
-        if (mask == 0) continue;
+    const auto find = [&](const auto& follow) HWY_ATTR {
         AnyOfGroup search;
         search.limits = chunk.limits;
-        GroupTrace(state, rays, query, search).run_towards(chunk, mask, end);
+        follow(search);
         found |= search.blocked;
+    };
+    for (const RayMask mask : chunk.octants) {
+        if (mask == 0) continue;
+        find([&](AnyOfGroup& search) HWY_ATTR {
+            GroupTrace(state, rays, query, search).run_towards(chunk, mask, end);
+        });
     }
-    found |= any_one_by_one(state, chunk.alone, rays, query);
+    if (chunk.apart != 0) {
+        find([&](AnyOfGroup& search)
+                 HWY_ATTR { RaysApart(state, rays, query, search).run(chunk.apart); });
+    }
+    each_ray(chunk.alone, [&](std::size_t ray) HWY_ATTR {
+        if (HWY_NAMESPACE::any_hit(state, rays[ray], query)) found |= RayMask{1} << ray;
+    });
     for (std::size_t i = 0; i < rays.size(); ++i)
         blocked[i] = static_cast<std::uint8_t>((found >> i) & 1);
 }

@@ -15,8 +15,8 @@
 #include "tracer/accel/simd/group_settle-inl.h"
 #include "tracer/accel/simd/group_spheres-inl.h"
 #include "tracer/accel/simd/group_triangles-inl.h"
-#include "tracer/accel/simd/interleaved-inl.h"
 #include "tracer/accel/simd/ray_chunk-inl.h"
+#include "tracer/accel/simd/rays_apart-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
 
 #include <cstddef>
@@ -111,17 +111,11 @@ private:
 
     // The same for a few rays in a mesh or a part of it.
     void few_in_mesh(const TopEntry& entry, RayMask mask) {
-        using One = decltype(one_of(search_, 0, 0));
-        run_interleaved<One, kFewRays>(
-            [&](Traversal<One>& traversal, std::size_t&) HWY_ATTR {
-                if (mask == 0) return false;
-                const auto ray = static_cast<std::size_t>(std::countr_zero(mask));
-                mask &= mask - 1;
-                traversal.start_in(state_, entry, rays_[ray], query_,
-                                   one_of(search_, ray, entry.object));
-                return true;
-            },
-            [](const Traversal<One>&, std::size_t) {});
+        if (state_.instances[entry.object].identity) {
+            RaysApart(state_, rays_, query_, search_).run_in(entry, mask);
+        } else {
+            each_on_its_own(entry, mask);
+        }
     }
 
     void enter(const TopEntry& entry, const GroupSpace& world, RayMask mask) {

@@ -74,6 +74,50 @@ HWY_INLINE void store(const TriangleVectors& from, std::size_t first, GroupTrian
     hn::Store(from.z, d, to[2].data() + first);
 }
 
+// Corners of a patch's triangles from `first` on, as many as one instruction takes.
+struct PatchCorners {
+    TriangleVectors a, b, c;
+
+    HWY_INLINE PatchCorners(const TrianglePatch& patch, std::size_t first)
+        : a(pick(patch, 0, first)), b(pick(patch, 1, first)), c(pick(patch, 2, first)) {}
+
+private:
+    static HWY_INLINE TriangleVectors pick(const TrianglePatch& patch, std::size_t k,
+                                           std::size_t first) {
+        const CornerPick corner(patch, k, first);
+        return {corner.of(patch.along(0)), corner.of(patch.along(1)), corner.of(patch.along(2))};
+    }
+};
+
+// e of each.
+HWY_INLINE TriangleFloats longest_edge(const PatchCorners& corners, const TriangleVectors& edge_b,
+                                       const TriangleVectors& edge_c) {
+    return hn::Max(hn::Max(largest_of(edge_b), largest_of(edge_c)),
+                   largest_of(corners.c - corners.b));
+}
+
+inline constexpr float kUnitError = 0x1p-24f;  // u
+inline constexpr float kTinyError = 16.0f * std::numeric_limits<float>::min();
+// With several origins U is taken from the other functions: three of their errors.
+inline constexpr float kOriginsApart = 192.0f;
+
+// `factor` is the bound's own, 64 or kOriginsApart, times D.
+HWY_INLINE TriangleFloats edge_error_of(TriangleFloats edge_reach, float factor) {
+    const Triangles d;
+    return hn::MulAdd(edge_reach, hn::Set(d, factor * kUnitError), hn::Set(d, kTinyError));
+}
+HWY_INLINE TriangleFloats slope_error_of(TriangleFloats edge, float steepest) {
+    const Triangles d;
+    return hn::MulAdd(hn::Mul(edge, edge), hn::Set(d, 48.0f * kUnitError * steepest),
+                      hn::Set(d, kTinyError));
+}
+HWY_INLINE TriangleFloats height_growth_of(TriangleFloats edge) {
+    return hn::Mul(hn::Mul(edge, edge), hn::Set(Triangles(), 48.0f * kUnitError));
+}
+HWY_INLINE TriangleFloats height_error_of(TriangleFloats edge, TriangleFloats reach) {
+    return hn::MulAdd(height_growth_of(edge), reach, hn::Set(Triangles(), kTinyError));
+}
+
 // Of an edge function of direction the bounds that hold for all rays.
 struct EdgeBounds {
     TriangleFloats low, high;
@@ -98,47 +142,36 @@ HWY_INLINE EdgeBounds edge_bounds(const GroupSpace& space, const TriangleVectors
 // those that some ray of the group may meet, as a mask.
 HWY_INLINE std::uint32_t set_triangles(const GroupSpace& space, const TrianglePatch& patch,
                                        std::size_t first, GroupTriangles& triangles) {
-    constexpr float kUnit = 0x1p-24f;
-    constexpr float kTiny = 16.0f * std::numeric_limits<float>::min();
     const Triangles d;
-    TriangleVectors corner[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-        const CornerPick pick(patch, k, first);
-        corner[k] = {pick.of(patch.along(0)), pick.of(patch.along(1)), pick.of(patch.along(2))};
-    }
-    const auto& [a, b, c] = corner;
+    const PatchCorners corners(patch, first);
+    const auto& [a, b, c] = corners;
     const TriangleVectors edge_b = b - a;
     const TriangleVectors edge_c = c - a;
-    const TriangleVectors edge_bc = c - b;
     const TriangleVectors n = cross(edge_b, edge_c);
     const TriangleVectors low{hn::Set(d, space.origin_low[0]), hn::Set(d, space.origin_low[1]),
                               hn::Set(d, space.origin_low[2])};
     const TriangleVectors high{hn::Set(d, space.origin_high[0]), hn::Set(d, space.origin_high[1]),
                                hn::Set(d, space.origin_high[2])};
-    const auto edge = hn::Max(hn::Max(largest_of(edge_b), largest_of(edge_c)), largest_of(edge_bc));
+    const auto edge = longest_edge(corners, edge_b, edge_c);
     const auto reach = hn::Add(hn::Max(largest_of(a - low), largest_of(a - high)), edge);
     const auto rounded = hn::Mul(edge, hn::Add(reach, hn::Set(d, space.origin_rounding)));
-    const auto tiny = hn::Set(d, kTiny);
-    // With several origins U is taken from the others: three of their errors.
-    const float of_edge = (space.one_origin ? 64.0f : 192.0f) * kUnit * space.steepest_direction;
-    const auto edge_error = hn::MulAdd(rounded, hn::Set(d, of_edge), tiny);
+    const auto edge_error = edge_error_of(
+        rounded, (space.one_origin ? 64.0f : kOriginsApart) * space.steepest_direction);
     store(a, first, triangles.a);
     store(edge_b, first, triangles.edge_b);
     store(edge_c, first, triangles.edge_c);
     store(n, first, triangles.n);
     hn::Store(edge_error, d, triangles.edge_error.data() + first);
-    hn::Store(
-        hn::MulAdd(hn::Mul(edge, edge), hn::Set(d, 48.0f * kUnit * space.steepest_direction), tiny),
-        d, triangles.slope_error.data() + first);
-    const auto of_height = hn::Mul(hn::Mul(edge, edge), hn::Set(d, 48.0f * kUnit));
+    hn::Store(slope_error_of(edge, space.steepest_direction), d,
+              triangles.slope_error.data() + first);
     const auto from_origin = space.course.backwards()
                                  ? hn::Set(d, space.forward_rounding)
                                  : hn::Add(reach, hn::Set(d, space.origin_rounding));
-    hn::Store(hn::MulAdd(of_height, from_origin, tiny), d, triangles.height_error.data() + first);
-    hn::Store(of_height, d, triangles.height_growth.data() + first);
+    hn::Store(height_error_of(edge, from_origin), d, triangles.height_error.data() + first);
+    hn::Store(height_growth_of(edge), d, triangles.height_growth.data() + first);
     if (!space.one_origin) return (1u << kTrianglesAtOnce) - 1u;
     const TriangleVectors from_a = a - low;
-    const TriangleVectors u = cross(b - low, edge_bc);
+    const TriangleVectors u = cross(b - low, c - b);
     const TriangleVectors v = cross(edge_c, c - low);
     const TriangleVectors w = cross(from_a, edge_b);
     store(u, first, triangles.u);
@@ -164,12 +197,16 @@ struct GroupTriangle {
     std::size_t i;
 };
 
-inline void keep(const GroupTriangle& triangle, const Instance& instance, Candidate& candidate) {
+inline void keep_corners(const TrianglePatch& patch, std::size_t i, const Instance& instance,
+                         Candidate& candidate) {
     candidate.instance = &instance;
     for (int k = 0; k < 3; ++k) {
-        const glm::vec3 p = triangle.patch.position(static_cast<std::uint32_t>(triangle.i), k);
+        const glm::vec3 p = patch.position(static_cast<std::uint32_t>(i), k);
         candidate.corners[static_cast<std::size_t>(k)] = {p.x, p.y, p.z, 0.0f};
     }
+}
+inline void keep(const GroupTriangle& triangle, const Instance& instance, Candidate& candidate) {
+    keep_corners(triangle.patch, triangle.i, instance, candidate);
 }
 // Of what is no triangle there is nothing to keep.
 template <typename Shape>

@@ -23,9 +23,9 @@ HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Fewer rays than that go one by one: in meshes they then hide each other's waiting (see
-// Traversal), elsewhere a group is better as soon as it isn't given up at once. Rays that go all
-// ways seldom have more in common than their octant.
+// Fewer rays than that are no group: through meshes they are quicker apart (see RaysApart),
+// elsewhere a group is better as soon as it isn't given up at once. Rays that go all ways seldom
+// have more in common than their octant.
 inline int fewest_in_group(const AccelState& state, const std::array<RayMask, 8>& octants) {
     if (!state.mostly_triangles) return kFewRays + 1;
     const auto ways =
@@ -38,6 +38,7 @@ struct Chunk {
     GroupRays world;
     GroupLimits limits;
     std::array<RayMask, 8> octants{};
+    RayMask apart = 0;  // they could go in groups, but have nothing in common
     RayMask alone = 0;
 
     Chunk(const AccelState& state, std::span<const Ray> rays, const RayQuery& query) {
@@ -63,7 +64,7 @@ struct Chunk {
         const int fewest = fewest_in_group(state, octants);
         for (RayMask& group : octants) {
             if (std::popcount(group) >= fewest) continue;
-            alone |= group;
+            (state.mostly_triangles ? apart : alone) |= group;
             group = 0;
         }
     }

@@ -81,29 +81,53 @@ HWY_INLINE EdgeFunctions<TriangleFloats> edge_functions_of_ray(const GroupRays& 
     return f;
 }
 
-// The triangles from `first` on, as many as one instruction takes.
-HWY_INLINE void judge_some_of_patch(const GroupRays& rays, const GroupLimits& limits,
-                                    std::size_t ray, const GroupTriangles& all, std::size_t first,
-                                    const ShownSides& shown, PatchVerdict& verdict) {
+// How wrong they may be.
+struct TriangleErrors {
+    TriangleFloats edge, slope, height;
+};
+
+// What the bounds say of as many triangles as one instruction takes, as bits from `first` on.
+struct SomeVerdict {
+    std::uint32_t may = 0;
+    std::uint32_t sure = 0;
+};
+
+// Sets the numbers of the sure ones.
+HWY_INLINE SomeVerdict judge_functions(const EdgeFunctions<TriangleFloats>& f,
+                                       const TriangleErrors& errors, float t_min, float t_far,
+                                       const ShownSides& shown, std::size_t first,
+                                       PatchVerdict& verdict) {
     const Triangles d;
-    const EdgeFunctions<TriangleFloats> f = edge_functions_of_ray(rays, ray, all, first);
-    const EdgeBounded<Triangles> edges(f, hn::Load(d, all.edge_error.data() + first));
+    const EdgeBounded<Triangles> edges(f, errors.edge);
     std::uint32_t may = ~triangle_bits(edges.misses(shown)) & ((1u << kTrianglesAtOnce) - 1u);
-    if (may == 0) return;
-    const PlaneBounded<Triangles> plane(
-        f.slope, hn::Load(d, all.slope_error.data() + first),
-        Height<TriangleFloats>{f.height, hn::Load(d, all.height_error.data() + first)});
-    const auto t_min = hn::Set(d, limits.t_min[ray]);
-    const auto t_far = hn::Set(d, limits.t_far[ray]);
-    may &= ~triangle_bits(plane.misses(t_min, t_far));
-    if (may == 0) return;
+    if (may == 0) return {};
+    const PlaneBounded<Triangles> plane(f.slope, errors.slope,
+                                        Height<TriangleFloats>{f.height, errors.height});
+    const auto least = hn::Set(d, t_min);
+    const auto most = hn::Set(d, t_far);
+    may &= ~triangle_bits(plane.misses(least, most));
+    if (may == 0) return {};
     const auto from = plane.from();
     const auto to = plane.to();
-    const auto sure = hn::And(edges.surely_within(), plane.surely_within(from, to, t_min, t_far));
+    const auto sure = hn::And(edges.surely_within(), plane.surely_within(from, to, least, most));
     hn::Store(from, d, verdict.from.data() + first);
     hn::Store(to, d, verdict.to.data() + first);
-    verdict.may |= may << first;
-    verdict.sure |= (may & triangle_bits(sure)) << first;
+    return {may << first, (may & triangle_bits(sure)) << first};
+}
+
+// judge_some(first) is asked for all triangles of a patch.
+template <typename Some>
+HWY_INLINE void judge_all_of_patch(std::size_t triangles, PatchVerdict& verdict,
+                                   const Some& judge_some) {
+    SomeVerdict all;
+    for (std::size_t first = 0; first < triangles; first += kTrianglesAtOnce) {
+        const SomeVerdict some = judge_some(first);
+        all.may |= some.may;
+        all.sure |= some.sure;
+    }
+    const std::uint32_t there = (1u << triangles) - 1u;
+    verdict.may = all.may & there;
+    verdict.sure = all.sure & there;
 }
 
 // Of rays that are followed forwards.
@@ -111,13 +135,65 @@ HWY_INLINE void judge_patch_of_ray(const GroupRays& rays, const GroupLimits& lim
                                    std::size_t ray, const GroupTriangles& all,
                                    std::size_t triangles, const ShownSides& shown,
                                    PatchVerdict& verdict) {
-    verdict.may = 0;
-    verdict.sure = 0;
-    for (std::size_t first = 0; first < triangles; first += kTrianglesAtOnce)
-        judge_some_of_patch(rays, limits, ray, all, first, shown, verdict);
-    const std::uint32_t there = (1u << triangles) - 1u;
-    verdict.may &= there;
-    verdict.sure &= there;
+    judge_all_of_patch(triangles, verdict, [&](std::size_t first) HWY_ATTR {
+        const Triangles d;
+        const TriangleErrors errors{hn::Load(d, all.edge_error.data() + first),
+                                    hn::Load(d, all.slope_error.data() + first),
+                                    hn::Load(d, all.height_error.data() + first)};
+        return judge_functions(edge_functions_of_ray(rays, ray, all, first), errors,
+                               limits.t_min[ray], limits.t_far[ray], shown, first, verdict);
+    });
+}
+
+HWY_INLINE TriangleFloats dot(const TriangleVectors& p, const TriangleVectors& q) {
+    return hn::MulAdd(p.x, q.x, hn::MulAdd(p.y, q.y, hn::Mul(p.z, q.z)));
+}
+
+HWY_INLINE TriangleVectors same(const glm::vec3& v) {
+    const Triangles d;
+    return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
+}
+
+// The same of a ray that meets the patch alone: what set_triangles would keep for others stays in
+// registers. `steepest` is the direction's largest component; the patch is in the ray's space.
+HWY_INLINE void judge_patch_alone(const Ray& ray, float steepest, float t_far,
+                                  const TrianglePatch& patch, const ShownSides& shown,
+                                  PatchVerdict& verdict) {
+    judge_all_of_patch(patch.triangles, verdict, [&](std::size_t first) HWY_ATTR {
+        const PatchCorners corners(patch, first);
+        const TriangleVectors edge_b = corners.b - corners.a;
+        const TriangleVectors edge_c = corners.c - corners.a;
+        const TriangleVectors n = cross(edge_b, edge_c);
+        const TriangleVectors from_origin = corners.a - same(ray.origin);
+        const TriangleVectors direction = same(ray.direction);
+        const TriangleVectors r = cross(direction, from_origin);
+        const auto edge = longest_edge(corners, edge_b, edge_c);
+        const auto reach = hn::Add(largest_of(from_origin), edge);
+        EdgeFunctions<TriangleFloats> f;
+        f.slope = dot(n, direction);
+        f.v = hn::Neg(dot(edge_c, r));
+        f.w = dot(edge_b, r);
+        f.u = hn::Sub(f.slope, hn::Add(f.v, f.w));
+        f.height = dot(n, from_origin);
+        const TriangleErrors errors{edge_error_of(hn::Mul(edge, reach), kOriginsApart * steepest),
+                                    slope_error_of(edge, steepest), height_error_of(edge, reach)};
+        return judge_functions(f, errors, ray.t_min, t_far, shown, first, verdict);
+    });
+}
+
+// True if what a ray surely hits between the two surely stands before its candidate, whose place it
+// is to take then; else it has become a rival.
+HWY_INLINE bool precedes_candidate(ClosestOfGroup& search, std::size_t ray, float from, float to,
+                                   std::uint32_t object, std::uint32_t primitive) {
+    const float window = to * kBeyondTie;
+    search.limits.t_far[ray] = std::min(search.limits.t_far[ray], window);
+    if (!(window < search.candidate_from[ray])) {
+        search.add_rival(ray, object, primitive);
+        return false;
+    }
+    search.candidate_from[ray] = from;
+    search.found |= RayMask{1} << ray;
+    return true;
 }
 
 // A triangle that ray `ray` surely hits between the two: as take() of a vector of rays.
@@ -127,17 +203,30 @@ HWY_INLINE void take_one(ClosestOfGroup& search, std::size_t ray, float from, fl
     if (from > search.limits.t_far[ray]) return;  // behind what was taken since it was judged
     if (!taken.enter(search)) {
         search.add_rival(ray, taken.object, taken.primitive);
-        return;
+    } else if (precedes_candidate(search, ray, from, to, taken.object, taken.primitive)) {
+        search.candidate[ray] = taken.place;
     }
-    const float window = to * kBeyondTie;
-    search.limits.t_far[ray] = std::min(search.limits.t_far[ray], window);
-    if (!(window < search.candidate_from[ray])) {
-        search.add_rival(ray, taken.object, taken.primitive);
-        return;
-    }
-    search.candidate_from[ray] = from;
-    search.candidate[ray] = taken.place;
-    search.found |= RayMask{1} << ray;
+}
+
+// A triangle of a patch that a ray met alone.
+struct MetAlone {
+    const Instance& instance;
+    std::uint32_t object;  // index
+    const TrianglePatch& patch;
+    std::size_t i;
+};
+
+// The same of such a triangle, in a place that is the ray's own.
+HWY_INLINE void take_alone(ClosestOfGroup& search, std::size_t ray, float from, float to,
+                           const MetAlone& met) {
+    if (from > search.limits.t_far[ray]) return;
+    const std::uint32_t primitive = met.patch.primitives()[met.i];
+    if (!precedes_candidate(search, ray, from, to, met.object, primitive)) return;
+    const std::size_t place = ClosestOfGroup::kMostCandidates + ray;
+    search.candidate[ray] = static_cast<std::uint32_t>(place);
+    search.candidates[place].object = met.object;
+    search.candidates[place].primitive = primitive;
+    keep_corners(met.patch, met.i, met.instance, search.candidates[place]);
 }
 
 }  // namespace raypick::HWY_NAMESPACE

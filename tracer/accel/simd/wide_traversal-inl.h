@@ -67,6 +67,31 @@ struct WaitingBoxes {
         enter[count] = at;
         ref[count++] = what;
     }
+
+    // Leaves out what is entered beyond `far`, of all that waits above `base`.
+    HWY_INLINE void drop_beyond(float far, std::size_t base) {
+        std::size_t kept = base;
+#if HWY_TARGET <= HWY_AVX2
+        const Boxes d;
+        const hn::Rebind<std::uint32_t, Boxes> du;
+        for (std::size_t i = base; i < count; i += kWidth) {
+            const auto at = hn::LoadU(d, enter + i);
+            const auto what = hn::LoadU(du, ref + i);
+            const auto there = hn::FirstN(d, count - i);
+            const Packing<Boxes> near(hn::And(there, hn::Le(at, hn::Set(d, far))));
+            hn::StoreU(near.of(at), d, enter + kept);
+            hn::StoreU(near.of(what), du, ref + kept);
+            kept += near.count();
+        }
+#else
+        for (std::size_t i = base; i < count; ++i) {
+            enter[kept] = enter[i];
+            ref[kept] = ref[i];
+            kept += enter[i] <= far ? 1u : 0u;
+        }
+#endif
+        count = kept;
+    }
 };
 
 // A ray as the slab tests see it. `slop` widens every box by an absolute amount, for rays that were

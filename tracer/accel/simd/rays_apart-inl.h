@@ -1,0 +1,316 @@
+// Rays of a group that have little in common, each on its own way through the trees. Included once
+// for each instruction set.
+#if defined(RAYPICK_RAYS_APART_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYPICK_RAYS_APART_INL_H
+#undef RAYPICK_RAYS_APART_INL_H
+#else
+#define RAYPICK_RAYS_APART_INL_H
+#endif
+
+#include "tracer/accel/simd/group_search-inl.h"
+#include "tracer/accel/simd/ray_patches-inl.h"
+#include "tracer/accel/simd/single_ray-inl.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <variant>
+
+HWY_BEFORE_NAMESPACE();
+namespace raypick::HWY_NAMESPACE {
+
+// `Group` is ClosestOfGroup, AnyOfGroup or CrossingsOfGroup. Several rays are on their way at a
+// time. All that are at a node take a step, then all that are at a leaf: a loop of one kind of step
+// has few branches that can't be foretold, and while one ray waits for memory the others go on.
+template <typename Group>
+class RaysApart {
+public:
+    RaysApart(const AccelState& state, std::span<const Ray> rays, const RayQuery& query,
+              Group& search)
+        : state_(state), rays_(rays), query_(query), search_(search) {}
+
+    // The mask's rays, for which what is said of groups holds but that they go one way.
+    void run(RayMask mask) {
+        for (const std::uint32_t object : state_.unbounded) {
+            each_ray(mask, [&](std::size_t ray) HWY_ATTR {
+                auto one = one_of(search_, ray, object);
+                trace_simple(state_, object, rays_[ray], query_, one);
+            });
+        }
+        if (state_.top.empty()) return;
+        if (const TopEntry* only = only_mesh()) {
+            run_in(*only, mask);
+            return;
+        }
+        follow(mask, [&](Way& way) HWY_ATTR {
+            way.stack.push(-std::numeric_limits<float>::infinity(), state_.top.root.bits);
+            go_to_top(way);
+        });
+    }
+
+    // The same through a mesh that stands in the world's space, or a part of it.
+    void run_in(const TopEntry& entry, RayMask mask) {
+        follow(mask, [&](Way& way) HWY_ATTR {
+            enter_mesh(way, entry);
+            way.is_last = true;
+        });
+    }
+
+private:
+    static constexpr std::size_t kWays = 16;
+    // So many make a loop worth its while.
+    static constexpr std::size_t kLeaves = 8;
+
+    // A ray on its way.
+    struct Way {
+        std::size_t ray;
+        const WideNode* nodes;      // of the tree that it is in
+        const PrimitiveTree* mesh;  // null in the top tree
+        const Instance* instance;
+        std::uint32_t object;
+        WideRef at;
+        std::size_t base;  // what waits below is of the top tree; kInTop: all is
+        bool is_last;      // the mesh is all that there is
+        float t_min;
+        float steepest;  // the direction's largest component
+        std::optional<SlabRay> slabs;
+        std::optional<RayInSpace> space;  // once it is needed
+        WaitingBoxes stack;
+    };
+    static constexpr std::size_t kInTop = std::numeric_limits<std::size_t>::max();
+
+    // Those at one kind of place.
+    struct Ways {
+        std::array<Way*, kWays + 1> way;
+        std::size_t count = 0;
+    };
+
+    template <typename Start>
+    void follow(RayMask pending, const Start& start) {
+        Way ways[kWays];  // NOLINT: large, and set when they begin
+        Ways at_nodes;
+        Ways at_leaves;
+        for (std::size_t i = 0; i < kWays && pending != 0; ++i) {
+            begin(ways[i], pending, start);
+            if (goes_on(ways[i], pending, start)) put(ways[i], at_nodes, at_leaves);
+        }
+        while (at_nodes.count + at_leaves.count > 0) {
+            while (at_nodes.count > 0 && at_leaves.count < kLeaves) {
+                const std::size_t count = std::exchange(at_nodes.count, 0);
+                for (std::size_t i = 0; i < count; ++i) {
+                    Way& way = *at_nodes.way[i];
+                    way.slabs->push_met(way.nodes[way.at.index()], way.t_min,
+                                        search_.limits.t_far[way.ray], way.stack);
+                    if (goes_on(way, pending, start)) put(way, at_nodes, at_leaves);
+                }
+            }
+            const Ways some = at_leaves;
+            at_leaves.count = 0;
+            for (std::size_t i = 0; i < some.count; ++i) {
+                Way& way = *some.way[i];
+                search_leaf(way);
+                if (goes_on(way, pending, start)) put(way, at_nodes, at_leaves);
+            }
+        }
+    }
+
+    // With the lowest ray of the mask.
+    template <typename Start>
+    HWY_INLINE void begin(Way& way, RayMask& pending, const Start& start) {
+        way.ray = static_cast<std::size_t>(std::countr_zero(pending));
+        pending &= pending - 1;
+        const Ray& from = rays_[way.ray];
+        way.t_min = from.t_min;
+        way.steepest = largest_of(from.direction);
+        way.slabs.emplace(from.origin, from.direction,
+                          kDoubleSlop * std::max(largest_of(from.origin), state_.reach));
+        way.space.reset();
+        way.stack.count = 0;
+        way.is_last = false;
+        start(way);
+    }
+
+    // Takes what waits on top of the stack, if need be of another ray; false if there is none.
+    template <typename Start>
+    HWY_INLINE bool goes_on(Way& way, RayMask& pending, const Start& start) {
+        if (way.stack.count > way.base && way.base != kInTop) {
+            way.at = {way.stack.ref[--way.stack.count]};
+            return true;
+        }
+        while (!goes_on_from_mesh(way)) {
+            if (pending == 0) return false;
+            begin(way, pending, start);
+        }
+        return true;
+    }
+
+    // A place beyond it, if it has no more of this mesh.
+    HWY_NOINLINE bool goes_on_from_mesh(Way& way) {
+        for (;;) {
+            if (way.mesh != nullptr && way.stack.count > way.base) {
+                way.at = {way.stack.ref[--way.stack.count]};
+                return true;
+            }
+            if (way.is_last) return false;
+            go_to_top(way);
+            if (way.stack.count == 0) return false;
+            --way.stack.count;
+            if (!(way.stack.enter[way.stack.count] <= search_.limits.t_far[way.ray])) continue;
+            way.at = {way.stack.ref[way.stack.count]};
+            if (!way.at.is_leaf()) return true;
+            enter_objects(way);
+        }
+    }
+
+    // Without a branch, as it can't be foretold which it is.
+    static HWY_INLINE void put(Way& way, Ways& at_nodes, Ways& at_leaves) {
+        const std::size_t is_leaf = way.at.bits >> 31u;
+        at_nodes.way[at_nodes.count] = at_leaves.way[at_leaves.count] = &way;
+        at_leaves.count += is_leaf;
+        at_nodes.count += 1 - is_leaf;
+        fetch(way);
+    }
+
+    static HWY_INLINE void fetch(const Way& way) {
+        const void* place = &way.nodes[way.at.index()];
+        if (way.at.is_leaf()) place = &way.mesh->patches.blocks[way.at.index()];
+        const auto* line = static_cast<const std::byte*>(place);
+        for (std::size_t i = 0; i < 4; ++i)
+            __builtin_prefetch(line + 64 * i);
+    }
+
+    void go_to_top(Way& way) const {
+        way.mesh = nullptr;
+        way.base = kInTop;
+        way.nodes = state_.top.nodes.data();
+    }
+
+    HWY_INLINE void enter_mesh(Way& way, const TopEntry& entry) const {
+        way.object = entry.object;
+        way.instance = &state_.instances[entry.object];
+        way.mesh = way.instance->tree;
+        way.nodes = way.mesh->bvh.nodes.data();
+        way.base = way.stack.count;
+        way.stack.push(-std::numeric_limits<float>::infinity(), entry.part.bits);
+    }
+
+    // At a leaf of the top tree.
+    HWY_NOINLINE void enter_objects(Way& way) {
+        const std::uint32_t index = state_.top.indices[way.at.index()];
+        const TopEntry& first = state_.entries[index & ~WideBvh::kLast];
+        if ((index & WideBvh::kLast) != 0 && goes_into(first)) {
+            enter_mesh(way, first);
+            return;
+        }
+        each_index(state_.top, way.at, [&](std::uint32_t number) HWY_ATTR {
+            const TopEntry& entry = state_.entries[number];
+            auto one = one_of(search_, way.ray, entry.object);
+            return trace_entry(state_, entry, rays_[way.ray], space_of(way), query_, one);
+        });
+    }
+
+    [[nodiscard]] const TopEntry* only_mesh() const {
+        if (!state_.top.root.is_leaf()) return nullptr;
+        const std::uint32_t index = state_.top.indices[state_.top.root.index()];
+        const TopEntry& entry = state_.entries[index & ~WideBvh::kLast];
+        return (index & WideBvh::kLast) != 0 && goes_into(entry) ? &entry : nullptr;
+    }
+
+    [[nodiscard]] bool goes_into(const TopEntry& entry) const {
+        const Instance& instance = state_.instances[entry.object];
+        if (instance.joined()) return true;
+        return instance.identity &&
+               std::holds_alternative<MeshInstance>(state_.scene->objects[entry.object].shape);
+    }
+
+    RayInSpace& space_of(Way& way) const {
+        if (!way.space) way.space.emplace(rays_[way.ray], state_.reach);
+        return *way.space;
+    }
+
+    HWY_INLINE void search_leaf(Way& way) {
+        const float before = search_.limits.t_far[way.ray];
+        const bool ends = each_patch(way.mesh->patches, way.at,
+                                     [&](const TrianglePatch& patch)
+                                         HWY_ATTR { return search_patch(way, patch); });
+        if (ends) {
+            way.stack.count = way.base = 0;
+            way.is_last = true;
+            return;
+        }
+        const float far = search_.limits.t_far[way.ray];
+        if (far < before) way.stack.drop_beyond(far, way.base);
+    }
+
+    // True: the ray has ended.
+    HWY_INLINE bool search_patch(Way& way, const TrianglePatch& patch) {
+        // Most are missed: whose it is comes afterwards.
+        PatchVerdict verdict;
+        judge(way, patch, {}, verdict);
+        if (verdict.may == 0) return false;
+        const std::uint32_t index =
+            way.instance->joined() ? way.instance->members[patch.member].object : way.object;
+        if (index == kNobody) return false;
+        const Object& object = state_.scene->objects[index];
+        if ((object.mask & query_.mask) == 0) return false;
+        const ShownSides shown{shows(object.sides, true) && shows(query_.sides, true),
+                               shows(object.sides, false) && shows(query_.sides, false)};
+        if (!shown.any()) return false;
+        if (!shown.front || !shown.back) judge(way, patch, shown, verdict);
+        return settle(way, index, patch, verdict);
+    }
+
+    HWY_INLINE void judge(const Way& way, const TrianglePatch& patch, const ShownSides& shown,
+                          PatchVerdict& verdict) const {
+        judge_patch_alone(rays_[way.ray], way.steepest, search_.limits.t_far[way.ray], patch, shown,
+                          verdict);
+    }
+
+    // True: the ray has ended.
+    HWY_INLINE bool settle(Way& way, std::uint32_t object, const TrianglePatch& patch,
+                           const PatchVerdict& verdict) {
+        const Instance& instance = state_.instances[object];
+        const RayMask bit = RayMask{1} << way.ray;
+        std::uint32_t may = verdict.may;
+        each_bit(verdict.may, [&](std::size_t i) HWY_ATTR {
+            if (crossed(search_, object, patch.primitives()[i], bit)) may &= ~(1u << i);
+        });
+        const std::uint32_t sure = instance.holes ? 0u : verdict.sure & may;
+        if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
+            each_bit(sure, [&](std::size_t i) HWY_ATTR {
+                take_alone(search_, way.ray, verdict.from[i], verdict.to[i],
+                           {instance, object, patch, i});
+            });
+        } else if (sure != 0) {
+            search_.block(bit);
+            return true;
+        }
+        return (may & ~sure) != 0 && decide(way, object, patch, may & ~sure);
+    }
+
+    // The triangles that the bounds leave open. True: the ray has ended.
+    HWY_NOINLINE bool decide(Way& way, std::uint32_t index, const TrianglePatch& patch,
+                             std::uint32_t some) {
+        const Ray& ray = rays_[way.ray];
+        const Instance& instance = state_.instances[index];
+        const Passage passage{*state_.scene, state_.scene->objects[index], instance, ray,
+                              query_,        object_ray(instance, ray)};
+        auto one = one_of(search_, way.ray, index);
+        using One = decltype(one);
+        return ShapeTrace<One>{passage, &space_of(way), {}, one}.triangles(patch, some);
+    }
+
+    const AccelState& state_;
+    std::span<const Ray> rays_;
+    const RayQuery& query_;
+    Group& search_;
+};
+
+}  // namespace raypick::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard
