@@ -294,6 +294,7 @@ TEST_P(AccelBatch, HolesLetRaysThrough) {
     const std::vector<Ray> rays =
         coherent_rays(accel.bounds(), {48, 64}, Projection::perspective, 2);
     expect_as_one_by_one(accel, rays);  // brute force knows nothing of holes
+    expect_as_one_by_one(accel, rays_through(accel.bounds(), 3, 1000));
     // Some rays go through the holes of all, and some don't.
     std::vector<Hit> hits(rays.size());
     accel.intersect(rays, hits);
