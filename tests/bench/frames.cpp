@@ -42,8 +42,8 @@ struct FrameDuel {
 Contender our_frame(const FrameDuel& duel, ImageSize size, int threads) {
     return {"ours", [&duel, size, threads] {
                 return seconds_of([&] {
-                    render(duel.accel, duel.view.camera, size,
-                           with_threads(duel.settings, threads), Channels::colour);
+                    render(duel.accel, duel.view.camera, size, with_threads(duel.settings, threads),
+                           Channels::colour);
                 });
             }};
 }

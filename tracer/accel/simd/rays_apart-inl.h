@@ -73,7 +73,7 @@ private:
         const Instance* instance;
         std::uint32_t object;
         WideRef at;
-        std::size_t base;  // what waits below is of the top tree; kInTop: all is
+        std::size_t base;  // what waits below is of the top tree
         bool is_last;      // the mesh is all that there is
         float t_min;
         float steepest;  // the direction's largest component
@@ -81,6 +81,7 @@ private:
         std::optional<RayInSpace> space;  // once it is needed
         WaitingBoxes stack;
     };
+    // All that waits is of the top tree, however much it is.
     static constexpr std::size_t kInTop = std::numeric_limits<std::size_t>::max();
 
     // Those at one kind of place.
@@ -137,7 +138,7 @@ private:
     // Takes what waits on top of the stack, if need be of another ray; false if there is none.
     template <typename Start>
     HWY_INLINE bool goes_on(Way& way, RayMask& pending, const Start& start) {
-        if (way.stack.count > way.base && way.base != kInTop) {
+        if (way.stack.count > way.base) {  // not in the top tree: see kInTop
             way.at = {way.stack.ref[--way.stack.count]};
             return true;
         }
