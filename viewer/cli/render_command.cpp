@@ -183,7 +183,7 @@ void render_to(const RenderOutput& output, const RenderCommand& command,
 // because asking for too much memory may end in a process being killed instead of in an error.
 void check_memory(const RenderCommand& command) {
     const ImageSize size = command.size;
-    const double bytes_per_pixel = writes_png(command) ? 32.0 : 80.0;
+    const double bytes_per_pixel = writes_png(command) && !command.raster ? 32.0 : 80.0;
     const double needed = bytes_per_pixel * static_cast<double>(size.pixel_count());
     const double installed =
         static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));

@@ -108,10 +108,7 @@ private:
                     PatchNotes& notes) {
         const Instance& instance = state_.instances[object];
         const RayMask bit = RayMask{1} << ray;
-        std::uint32_t may = verdict.may;
-        each_bit(verdict.may, [&](std::size_t i) HWY_ATTR {
-            if (crossed(search_, object, patch.primitives()[i], bit)) may &= ~(1u << i);
-        });
+        const std::uint32_t may = not_crossed(search_, object, patch, verdict.may, ray);
         const std::uint32_t sure = instance.holes ? 0u : verdict.sure & may;
         if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
             each_bit(sure, [&](std::size_t i) HWY_ATTR {

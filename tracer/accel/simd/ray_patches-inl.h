@@ -38,6 +38,18 @@ HWY_INLINE void each_bit(std::uint32_t mask, const Body& body) {
         body(static_cast<std::size_t>(std::countr_zero(mask)));
 }
 
+// Of a patch's triangles that a ray may hit, those that don't just let it go on.
+template <typename Group>
+HWY_INLINE std::uint32_t not_crossed(Group& search, std::uint32_t object,
+                                     const TrianglePatch& patch, std::uint32_t may,
+                                     std::size_t ray) {
+    std::uint32_t others = may;
+    each_bit(may, [&](std::size_t i) HWY_ATTR {
+        if (crossed(search, object, patch.primitives()[i], RayMask{1} << ray)) others &= ~(1u << i);
+    });
+    return others;
+}
+
 // What the bounds say of a ray with a patch's triangles; the numbers are those of the sure ones.
 struct PatchVerdict {
     std::uint32_t may = 0;

@@ -11,13 +11,16 @@
 #include "tracer/accel/simd/ray_patches-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 HWY_BEFORE_NAMESPACE();
@@ -275,11 +278,7 @@ private:
     HWY_INLINE bool settle(Way& way, std::uint32_t object, const TrianglePatch& patch,
                            const PatchVerdict& verdict) {
         const Instance& instance = state_.instances[object];
-        const RayMask bit = RayMask{1} << way.ray;
-        std::uint32_t may = verdict.may;
-        each_bit(verdict.may, [&](std::size_t i) HWY_ATTR {
-            if (crossed(search_, object, patch.primitives()[i], bit)) may &= ~(1u << i);
-        });
+        const std::uint32_t may = not_crossed(search_, object, patch, verdict.may, way.ray);
         const std::uint32_t sure = instance.holes ? 0u : verdict.sure & may;
         if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
             each_bit(sure, [&](std::size_t i) HWY_ATTR {
@@ -287,7 +286,7 @@ private:
                            {instance, object, patch, i});
             });
         } else if (sure != 0) {
-            search_.block(bit);
+            search_.block(RayMask{1} << way.ray);
             return true;
         }
         return (may & ~sure) != 0 && decide(way, object, patch, may & ~sure);
