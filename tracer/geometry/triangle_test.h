@@ -37,9 +37,9 @@ inline ShearedRay shear(const ObjectRay& ray) {
     s.kx = (s.kz + 1) % 3;
     s.ky = (s.kx + 1) % 3;
     if (ray.direction[s.kz] < 0.0) std::swap(s.kx, s.ky);  // keeps the winding
-    s.sx = ray.direction[s.kx] / ray.direction[s.kz];
-    s.sy = ray.direction[s.ky] / ray.direction[s.kz];
     s.sz = 1.0 / ray.direction[s.kz];
+    s.sx = ray.direction[s.kx] * s.sz;
+    s.sy = ray.direction[s.ky] * s.sz;
     return s;
 }
 
@@ -80,12 +80,12 @@ inline std::optional<TriangleHit> intersect_triangle(const ShearedRay& ray, cons
     if (!(std::abs(determinant) > 0.0)) return std::nullopt;
     // Corners on one line leave a determinant of rounding errors; this product is exact for floats.
     if (glm::cross(b - a, c - a) == glm::dvec3(0.0)) return std::nullopt;
-    const double scaled = ordered_sum(u * (ray.sz * pa[ray.kz]), v * (ray.sz * pb[ray.kz]),
-                                      w * (ray.sz * pc[ray.kz]));
+    const double scaled = ordered_sum(u * pa[ray.kz], v * pb[ray.kz], w * pc[ray.kz]);
+    const double inverse = 1.0 / determinant;
     TriangleHit hit;
-    hit.t = scaled / determinant;
-    hit.u = v / determinant;
-    hit.v = w / determinant;
+    hit.t = scaled * (ray.sz * inverse);
+    hit.u = v * inverse;
+    hit.v = w * inverse;
     hit.front_face = determinant > 0.0;
     return hit;
 }

@@ -226,9 +226,9 @@ HWY_INLINE void decide(TriangleColumns columns, TriangleAnswers& answers) {
             corner[axis] = hn::Sub(corner[axis], columns.origin[axis]);
     }
     const auto along = axes.z_of(columns.direction);
-    const auto sx = hn::Div(axes.x_of(columns.direction), along);
-    const auto sy = hn::Div(axes.y_of(columns.direction), along);
     const auto sz = hn::Div(hn::Set(d, 1.0), along);
+    const auto sx = hn::Mul(axes.x_of(columns.direction), sz);
+    const auto sy = hn::Mul(axes.y_of(columns.direction), sz);
     const auto az = axes.z_of(columns.corner[0]);
     const auto bz = axes.z_of(columns.corner[1]);
     const auto cz = axes.z_of(columns.corner[2]);
@@ -246,12 +246,15 @@ HWY_INLINE void decide(TriangleColumns columns, TriangleAnswers& answers) {
     const auto negative = hn::And(hn::And(hn::Le(u, zero), hn::Le(v, zero)), hn::Le(w, zero));
     const auto determinant = ordered_sum(u, v, w);
     const auto hit = hn::And(hn::Or(positive, negative), hn::Gt(hn::Abs(determinant), zero));
-    const auto scaled = ordered_sum(hn::Mul(u, hn::Mul(sz, az)), hn::Mul(v, hn::Mul(sz, bz)),
-                                    hn::Mul(w, hn::Mul(sz, cz)));
+    const auto scaled = ordered_sum(hn::Mul(u, az), hn::Mul(v, bz), hn::Mul(w, cz));
+    const auto inverse = hn::Div(hn::Set(d, 1.0), determinant);
     const hn::Rebind<float, Doubles> of_float;
-    hn::Store(hn::DemoteTo(of_float, hn::Div(scaled, determinant)), of_float, answers.t.data());
-    hn::Store(hn::DemoteTo(of_float, hn::Div(v, determinant)), of_float, answers.u.data());
-    hn::Store(hn::DemoteTo(of_float, hn::Div(w, determinant)), of_float, answers.v.data());
+    const auto store = [&](const DoubleVector& from, TriangleAnswers::Numbers& to) HWY_ATTR {
+        hn::Store(hn::DemoteTo(of_float, from), of_float, to.data());
+    };
+    store(hn::Mul(scaled, hn::Mul(sz, inverse)), answers.t);
+    store(hn::Mul(v, inverse), answers.u);
+    store(hn::Mul(w, inverse), answers.v);
     std::uint8_t stored[8] = {};
     hn::StoreMaskBits(d, hit, stored);
     answers.hit = stored[0];
