@@ -24,12 +24,13 @@ namespace hn = hwy::HWY_NAMESPACE;
 // - If it is outside of the side at one t, inside at another, and between the planes at both, then
 //   it crosses the side between the two.
 //
-// In float (u = 2^-24), with an axis wrong by 5 u and with components of the offset f of a ray's
-// origin from the base of at most R and of the direction of at most D: f . axis is wrong by less
-// than 16 u R, the components across the axis by 27 u R, those of the direction likewise with D,
-// and so heights and the components of `across` at t by less than `place` = 32 u (R + |t| D); F by
+// In float (u = 2^-24), with components of the axis and a widening wrong by 7 u of themselves, as
+// they are where float worked them out, and with components of the offset f of a ray's origin from
+// the base of at most R and of the direction of at most D: f . axis is wrong by less than 20 u R,
+// the components across the axis by 36 u R, those of the direction likewise with D, and so heights
+// and the components of `across` at t by less than `place` = 40 u (R + |t| D); F by
 // (2 + |widening|) place + 8 u widest, and its slope (times |across|) by
-// D (1 + |widening|) (4 place + 64 u |across|). The double code is wrong by a small part of that.
+// D (1 + |widening|) (4 place + 80 u |across|). The double code is wrong by a small part of that.
 template <class V>
 struct ConeLanes {
     V base_x, base_y, base_z;
@@ -72,7 +73,7 @@ public:
           gap_(gap()) {}
 
     // The ray's line passes the axis farther off than the cone is wide. |drift| is wrong by less
-    // than 48 u D.
+    // than 64 u D.
     HWY_INLINE M passes_by() const {
         const V error =
             hn::MulAdd(hn::Set(D(), 64.0f * kUnit),
@@ -124,7 +125,7 @@ public:
         const V slope_error =
             hn::MulAdd(hn::Mul(ray_.steepest, hn::Add(hn::Abs(cone_.widening), hn::Set(D(), 1.0f))),
                        hn::MulAdd(p.place_error, hn::Set(D(), 4.0f),
-                                  hn::Mul(p.distance, hn::Set(D(), 64.0f * kUnit))),
+                                  hn::Mul(p.distance, hn::Set(D(), 80.0f * kUnit))),
                        hn::Set(D(), kTiny));
         const M out = outside(p);
         const M under = hn::Lt(p.height, hn::Neg(p.place_error));
@@ -211,11 +212,11 @@ private:
         return hn::Abs(dot(ray_.direction_x, ray_.direction_y, ray_.direction_z, x, y, z));
     }
     HWY_INLINE V climb_error_bound() const {
-        return hn::Mul(ray_.steepest, hn::Set(D(), 16.0f * kUnit));
+        return hn::Mul(ray_.steepest, hn::Set(D(), 20.0f * kUnit));
     }
     HWY_INLINE V place_error(V t) const {
         return hn::MulAdd(hn::MulAdd(hn::Abs(t), ray_.steepest, reach_),
-                          hn::Set(D(), 32.0f * kUnit), hn::Set(D(), kTiny));
+                          hn::Set(D(), 40.0f * kUnit), hn::Set(D(), kTiny));
     }
     HWY_INLINE V side_error(V place) const {
         return hn::MulAdd(hn::Add(hn::Abs(cone_.widening), hn::Set(D(), 2.0f)), place,
