@@ -274,15 +274,20 @@ TEST_P(AccelBatch, ClipPlanesAndAccept) {
     expect_as_one_by_one(accel, rays, query);
 }
 
-TEST_P(AccelBatch, HolesLetRaysThrough) {
-    Scene scene;
-    Material leaf;
+// Cut out in a checker's pattern.
+MaterialId add_sieve(Scene& scene) {
+    Material sieve;
     Texture checker;
     checker.source = Checker{glm::vec4(1.0f), glm::vec4(0.0f)};
-    leaf.map(MapSlot::opacity).texture = add_texture(scene, checker);
-    leaf.map(MapSlot::opacity).u_row = {8, 0, 0};
-    leaf.map(MapSlot::opacity).v_row = {0, 8, 0};
-    const MaterialId material = add_material(scene, leaf);
+    sieve.map(MapSlot::opacity).texture = add_texture(scene, checker);
+    sieve.map(MapSlot::opacity).u_row = {8, 0, 0};
+    sieve.map(MapSlot::opacity).v_row = {0, 8, 0};
+    return add_material(scene, sieve);
+}
+
+TEST_P(AccelBatch, HolesLetRaysThrough) {
+    Scene scene;
+    const MaterialId material = add_sieve(scene);
     place(scene, Rectangle{}, material);
     MeshData data;
     data.positions = {{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}};
@@ -301,6 +306,36 @@ TEST_P(AccelBatch, HolesLetRaysThrough) {
     const auto met =
         std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.valid(); });
     EXPECT_GT(met, 100);
+}
+
+// In groups, and each on its own way.
+TEST_P(AccelBatch, HolesOfSetsLetRaysThrough) {
+    Random random(31);
+    std::vector<glm::vec4> spheres;
+    std::vector<glm::vec4> ends;
+    for (int i = 0; i < 150; ++i) {
+        const auto at = [&] { return glm::vec3(random.point(glm::dvec3(-1.0), glm::dvec3(1.0))); };
+        spheres.emplace_back(at(), 0.2f);
+        ends.emplace_back(at(), 0.1f);
+        ends.emplace_back(at(), 0.05f);
+    }
+    Scene scene;
+    const MaterialId material = add_sieve(scene);
+    place(scene, SphereSetInstance{add_sphere_set(scene, make_sphere_set("", spheres))}, material);
+    place(scene, ConeSetInstance{add_cone_set(scene, make_cone_set("", ends, true))}, material);
+    const Accel accel = accel_of(scene);
+    const std::vector<Ray> scattered = rays_through(accel.bounds(), 32, 2000);
+    expect_as_one_by_one(accel, scattered);
+    expect_as_one_by_one(accel,
+                         coherent_rays(accel.bounds(), {24, 32}, Projection::perspective, 33));
+    // What is hit first is not always what is hit first where it isn't cut out.
+    for (Object& object : scene.objects)
+        object.material = kNoMaterial;
+    const Accel whole = accel_of(scene);
+    const auto other = std::count_if(scattered.begin(), scattered.end(), [&](const Ray& ray) {
+        return accel.intersect(ray) != whole.intersect(ray);
+    });
+    EXPECT_GT(other, 100);
 }
 
 TEST_P(AccelBatch, OddSizesAndRaysThatAreNone) {

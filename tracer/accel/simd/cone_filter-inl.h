@@ -1,5 +1,5 @@
-// Cones that a ray surely misses, several at a time: see cone_bounds-inl.h. Included once for each
-// instruction set.
+// Cones that a ray surely misses, or surely hits, several at a time: see cone_bounds-inl.h.
+// Included once for each instruction set.
 #if defined(RAYPICK_CONE_FILTER_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RAYPICK_CONE_FILTER_INL_H
 #undef RAYPICK_CONE_FILTER_INL_H
@@ -8,6 +8,7 @@
 #endif
 
 #include "tracer/accel/simd/cone_bounds-inl.h"
+#include "tracer/accel/simd/ray_verdict-inl.h"
 #include "tracer/bvh/wide_bvh.h"
 #include "tracer/scene/scene.h"
 
@@ -49,6 +50,11 @@ public:
           // Beyond it products overflow, or bounds don't hold: then nothing is ruled out.
           idle_(!(reach < 1e11f && steepest_ > 1e-6f && steepest_ < 1e6f)) {}
 
+    // The same of a ray as it came, with nothing beyond what bounds hold for. `steepest` is its
+    // direction's largest component.
+    ConeFilter(const Ray& ray, float steepest)
+        : origin_(ray.origin), direction_(ray.direction), t_min_(ray.t_min), steepest_(steepest) {}
+
     // Of up to four cones, as a leaf has them, those that the ray may hit at a t of at most
     // `limit`, as a mask.
     HWY_INLINE std::uint32_t may_hit(const ConeSet& set, std::span<const std::uint32_t> primitives,
@@ -56,11 +62,7 @@ public:
         const std::uint32_t all = (1u << primitives.size()) - 1u;
         if (idle_) return all;
         const ConeLanes<FourFloats> cones = lanes(set, primitives);
-        const Four d;
-        const RayLanes<FourFloats> ray{
-            hn::Set(d, origin_.x),    hn::Set(d, origin_.y),    hn::Set(d, origin_.z),
-            hn::Set(d, direction_.x), hn::Set(d, direction_.y), hn::Set(d, direction_.z),
-            hn::Set(d, steepest_),    hn::Set(d, t_min_),       hn::Set(d, limit)};
+        const RayLanes<FourFloats> ray = ray_lanes(limit);
         ConeBounds<Four> bounds(cones, ray);
         const std::uint32_t left = all & ~bits(bounds.passes_by());
         if (left == 0) return 0;
@@ -68,7 +70,31 @@ public:
         return left & ~bits(bounds.misses());
     }
 
+    // Of such cones, which of them it hits first on a side that counts. Unless it is idle.
+    HWY_INLINE void judge(const ConeSet& set, std::span<const std::uint32_t> primitives,
+                          float limit, bool front, bool back, RayVerdict& verdict) const {
+        const ConeLanes<FourFloats> cones = lanes(set, primitives);
+        const RayLanes<FourFloats> ray = ray_lanes(limit);
+        ConeBounds<Four> bounds(cones, ray);
+        verdict.may = ((1u << primitives.size()) - 1u) & ~bits(bounds.passes_by());
+        if (verdict.may == 0) return;
+        bounds.estimate();
+        verdict.may &= ~bits(bounds.misses());
+        if (verdict.may == 0) return;
+        const auto crossing = bounds.crossing(front, back, set.capped);
+        verdict.sure = verdict.may & bits(crossing.sure);
+        hn::Store(crossing.from, Four(), verdict.from.data());
+        hn::Store(crossing.to, Four(), verdict.to.data());
+    }
+
 private:
+    HWY_INLINE RayLanes<FourFloats> ray_lanes(float limit) const {
+        const Four d;
+        return {hn::Set(d, origin_.x),    hn::Set(d, origin_.y),    hn::Set(d, origin_.z),
+                hn::Set(d, direction_.x), hn::Set(d, direction_.y), hn::Set(d, direction_.z),
+                hn::Set(d, steepest_),    hn::Set(d, t_min_),       hn::Set(d, limit)};
+    }
+
     HWY_INLINE ConeLanes<FourFloats> lanes(const ConeSet& set,
                                            std::span<const std::uint32_t> primitives) const {
         const std::size_t last = primitives.size() - 1;
@@ -116,8 +142,8 @@ private:
     glm::vec3 origin_, direction_;
     float t_min_;
     float steepest_;
-    float rounding_;
-    bool idle_;
+    float rounding_ = 0.0f;
+    bool idle_ = false;
 };
 
 }  // namespace raypick::HWY_NAMESPACE

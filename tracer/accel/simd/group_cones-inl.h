@@ -22,6 +22,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // What is the same for all rays of a group.
 struct GroupCone {
+    using Set = ConeSet;
+
     glm::vec3 base{0.0f};
     glm::vec3 axis{0.0f};
     float length = 0.0f;

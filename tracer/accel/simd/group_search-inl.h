@@ -10,6 +10,8 @@
 #include "tracer/accel/simd/decide_triangles-inl.h"
 #include "tracer/accel/simd/ray_group-inl.h"
 
+#include <type_traits>
+
 HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
 
@@ -158,6 +160,18 @@ template <typename Group>
 HWY_INLINE bool crossed(Group& /*group*/, std::uint32_t /*object*/, std::uint32_t /*primitive*/,
                         RayMask /*rays*/) {
     return false;
+}
+
+// A hit that counts, if none before it does.
+template <typename Group>
+HWY_INLINE void offer_hit(Group& search, std::size_t ray, std::uint32_t object,
+                          std::uint32_t primitive, float t) {
+    if (crossed(search, object, primitive, RayMask{1} << ray)) return;
+    if constexpr (!std::is_same_v<Group, ClosestOfGroup>) {
+        search.block(RayMask{1} << ray);
+    } else if (t <= search.limits.t_far[ray]) {
+        search.offer(ray, object, primitive, t);
+    }
 }
 
 }  // namespace raypick::HWY_NAMESPACE

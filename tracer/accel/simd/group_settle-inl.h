@@ -40,8 +40,7 @@ public:
           rays_(rays),
           query_(query),
           search_(search),
-          open_spheres_(state, rays, query),
-          open_cones_(state, rays, query) {}
+          open_(state, rays, query, search) {}
 
     // What was found of the mask's `bits` in the vector of rays from `ray` on.
     template <typename Shape>
@@ -64,7 +63,7 @@ public:
     void judge_patch(const Searched& searched, const GroupSpace& space,
                      const GroupTriangles& triangles, const TrianglePatch& patch, RayMask mask) {
         PatchNotes notes;
-        PatchVerdict verdict;
+        RayVerdict verdict;
         each_ray(mask, [&](std::size_t ray) HWY_ATTR {
             judge_patch_of_ray(space.rays, search_.limits, ray, triangles, patch.triangles,
                                searched.shown, verdict);
@@ -78,21 +77,8 @@ public:
         }
     }
 
-    // A hit that counts, if none before it does.
-    HWY_INLINE void offer(std::size_t ray, std::uint32_t object, std::uint32_t primitive, float t) {
-        if (crossed(search_, object, primitive, RayMask{1} << ray)) return;
-        if constexpr (!std::is_same_v<Group, ClosestOfGroup>) {
-            search_.block(RayMask{1} << ray);
-        } else if (t <= search_.limits.t_far[ray]) {
-            search_.offer(ray, object, primitive, t);
-        }
-    }
-
     // What waited for more of its kind. Called in the end.
-    void decide_last() {
-        if (!open_spheres_.empty()) decide_open(open_spheres_);
-        if (!open_cones_.empty()) decide_open(open_cones_);
-    }
+    void decide_last() { open_.decide_last(); }
 
 private:
     // Of a patch's triangles.
@@ -104,7 +90,7 @@ private:
     };
 
     void settle_ray(std::uint32_t object, const GroupTriangles& triangles,
-                    const TrianglePatch& patch, std::size_t ray, const PatchVerdict& verdict,
+                    const TrianglePatch& patch, std::size_t ray, const RayVerdict& verdict,
                     PatchNotes& notes) {
         const Instance& instance = state_.instances[object];
         const RayMask bit = RayMask{1} << ray;
@@ -135,10 +121,9 @@ private:
                 return;
             }
         } else if (!instance.holes) {
-            auto& later = open_like(shape);
             each_ray(mask, [&](std::size_t i) HWY_ATTR {
-                later.add({static_cast<std::uint32_t>(i), object, primitive});
-                if (later.full()) decide_open(later);
+                open_.template add<typename Shape::Set>(
+                    {static_cast<std::uint32_t>(i), object, primitive});
             });
             return;
         }
@@ -186,35 +171,20 @@ private:
             settle_one);
     }
 
-    OpenSpheres& open_like(const GroupSphere& /*shape*/) { return open_spheres_; }
-    OpenCones& open_like(const GroupCone& /*shape*/) { return open_cones_; }
-
-    template <typename Elements>
-    HWY_NOINLINE void decide_open(Elements& elements) {
-        elements.decide([&](const RayAndPrimitive& open, float t)
-                            HWY_ATTR { offer(open.ray, open.object, open.primitive, t); },
-                        [&](const RayAndPrimitive& open) HWY_ATTR {
-                            auto one = one_of(search_, open.ray, open.object);
-                            trace_primitive(state_, open.object, open.primitive, rays_[open.ray],
-                                            query_, one);
-                        });
-    }
-
     HWY_INLINE void offer_open(std::uint32_t index, std::uint32_t primitive, std::size_t ray,
                                const TriangleAnswers& answers, std::size_t lane) {
         if (!answers.hits(lane, rays_[ray].t_min, rays_[ray].t_max)) return;
         const bool front = answers.hits_front(lane);
         const Object& object = state_.scene->objects[index];
         if (!shows(object.sides, front) || !shows(query_.sides, front)) return;
-        offer(ray, index, primitive, answers.t[lane]);
+        offer_hit(search_, ray, index, primitive, answers.t[lane]);
     }
 
     const AccelState& state_;
     std::span<const Ray> rays_;
     const RayQuery& query_;
     Group& search_;
-    OpenSpheres open_spheres_;
-    OpenCones open_cones_;
+    OpenOfGroup<Group> open_;
 };
 
 }  // namespace raypick::HWY_NAMESPACE

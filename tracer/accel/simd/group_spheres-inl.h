@@ -18,6 +18,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // What is the same for all rays of a group; the errors as SphereLanes has them.
 struct GroupSphere {
+    using Set = SphereSet;
+
     glm::vec3 centre{0.0f};
     float squared_radius = 0.0f;
     float error = 0.0f;
@@ -65,34 +67,14 @@ HWY_INLINE Verdict judge(const GroupSpace& space, const GroupLimits& limits,
     // Arranged so that a NaN rules nothing out.
     verdict.may = ~ray_bits(hn::Lt(span.depth, hn::Neg(error))) & kAllAtOnce;
     if (verdict.may == 0) return verdict;
-    const auto t_min = hn::Load(d, limits.t_min.data() + ray);
-    const auto t_far = hn::Load(d, limits.t_far.data() + ray);
-    const auto grow = hn::Set(d, kGrowGroup);
-    const auto shrink = hn::Set(d, kShrinkGroup);
-    const auto beyond = [&](const RayFloats& t) HWY_ATTR {
-        return hn::Gt(hn::Sub(t, span.error), hn::Mul(t_far, grow));
-    };
-    const auto before = [&](const RayFloats& t) HWY_ATTR {
-        return hn::Lt(hn::Add(t, span.error), hn::Mul(t_min, shrink));
-    };
-    const auto within = [&](const RayFloats& t) HWY_ATTR {
-        return hn::And(hn::Gt(hn::Mul(hn::Sub(t, span.error), shrink), t_min),
-                       hn::Lt(hn::Mul(hn::Add(t, span.error), grow), t_far));
-    };
-    const auto never = hn::Lt(t_min, t_min);
-    const auto always = hn::Not(never);
-    const auto no_enter = shown.front ? hn::Or(beyond(span.enter), before(span.enter)) : always;
-    const auto no_leave = shown.back ? hn::Or(beyond(span.leave), before(span.leave)) : always;
-    verdict.may &= ~ray_bits(hn::And(no_enter, no_leave));
+    const SphereCrossing<Rays> crossing(span, error, hn::Load(d, limits.t_min.data() + ray),
+                                        hn::Load(d, limits.t_far.data() + ray), shown.front,
+                                        shown.back);
+    verdict.may &= ~ray_bits(crossing.misses);
     if (verdict.may == 0) return verdict;
-    const auto deep = hn::Gt(span.depth, hn::Mul(error, hn::Set(d, 16.0f)));
-    const auto enters = shown.front ? within(span.enter) : never;
-    const auto gone = shown.front ? before(span.enter) : always;
-    const auto leaves = shown.back ? hn::And(gone, within(span.leave)) : never;
-    verdict.sure = verdict.may & ray_bits(hn::And(deep, hn::Or(enters, leaves)));
-    const auto t = hn::IfThenElse(enters, span.enter, span.leave);
-    verdict.from = hn::Mul(hn::Sub(t, span.error), shrink);
-    verdict.to = hn::Mul(hn::Add(t, span.error), grow);
+    verdict.sure = verdict.may & ray_bits(crossing.sure);
+    verdict.from = crossing.from;
+    verdict.to = crossing.to;
     return verdict;
 }
 

@@ -77,24 +77,8 @@ private:
                     return false;
                 });
             },
-            [&](const WideRef& part, RayMask met) HWY_ATTR { finish_top(part, met); });
-    }
-
-    // What is left of the top tree, ray by ray.
-    void finish_top(const WideRef& part, RayMask mask) {
-        each_ray(mask, [&](std::size_t ray) HWY_ATTR {
-            RayInSpace world(rays_[ray], state_.reach);
-            walk(
-                state_.top, part, world.slabs(), rays_[ray].t_min,
-                [&]() HWY_ATTR { return search_.limits.t_far[ray]; },
-                [&](const WideRef& leaf) HWY_ATTR {
-                    return each_index(state_.top, leaf, [&](std::uint32_t number) HWY_ATTR {
-                        const TopEntry& entry = state_.entries[number];
-                        auto one = one_of(search_, ray, entry.object);
-                        return trace_entry(state_, entry, rays_[ray], world, query_, one);
-                    });
-                });
-        });
+            [&](const WideRef& part, RayMask met)
+                HWY_ATTR { RaysApart(state_, rays_, query_, search_).run_down(part, met); });
     }
 
     void each_on_its_own(const TopEntry& entry, RayMask mask) {
@@ -109,9 +93,9 @@ private:
         });
     }
 
-    // The same for a few rays in a mesh or a part of it.
-    void few_in_mesh(const TopEntry& entry, RayMask mask) {
-        if (state_.instances[entry.object].identity) {
+    // The same for a few rays in what has a tree, or in a part of it.
+    void few_in_tree(const TopEntry& entry, RayMask mask) {
+        if (RaysApart<Group>::takes_apart(state_.instances[entry.object])) {
             RaysApart(state_, rays_, query_, search_).run_in(entry, mask);
         } else {
             each_on_its_own(entry, mask);
@@ -203,7 +187,7 @@ private:
         each_ray(mask & decided.ordinary & shown, [&](std::size_t lane) HWY_ATTR {
             const std::size_t ray = first + lane;
             const auto t = static_cast<float>(decided.enters_at[lane]);
-            if (t > rays_[ray].t_min && t < rays_[ray].t_max) settle_.offer(ray, index, 0, t);
+            if (t > rays_[ray].t_min && t < rays_[ray].t_max) offer_hit(search_, ray, index, 0, t);
         });
     }
 
@@ -316,17 +300,8 @@ private:
         walk_group(state_.instances[entry.object].tree->bvh, entry.part, space,
                    search_.limits_in(space), mask, leaf,
                    [&](const WideRef& part, RayMask met) HWY_ATTR {
-                       if (is_mesh(entry)) {
-                           few_in_mesh({entry.object, part}, met);
-                       } else {
-                           each_on_its_own({entry.object, part}, met);
-                       }
+                       few_in_tree({entry.object, part}, met);
                    });
-    }
-
-    [[nodiscard]] bool is_mesh(const TopEntry& entry) const {
-        return state_.instances[entry.object].joined() ||
-               std::holds_alternative<MeshInstance>(state_.scene->objects[entry.object].shape);
     }
 
     template <typename Shape>

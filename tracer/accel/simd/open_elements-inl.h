@@ -11,12 +11,15 @@
 #include "tracer/accel/passage.h"
 #include "tracer/accel/simd/decide_cones-inl.h"
 #include "tracer/accel/simd/decide_spheres-inl.h"
+#include "tracer/accel/simd/group_search-inl.h"
+#include "tracer/accel/simd/single_ray-inl.h"
 #include "tracer/accel/simd/sole_elements-inl.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <variant>
 
 HWY_BEFORE_NAMESPACE();
@@ -117,8 +120,60 @@ private:
     Pairs pairs_;
 };
 
-using OpenCones = OpenElements<ConeSetInstance, ConePairs, ConesDecided>;
-using OpenSpheres = OpenElements<SphereSetInstance, SpherePairs, SpheresDecided>;
+// Those of a group's rays. Each waits until there are several of its kind.
+template <typename Group>
+class OpenOfGroup {
+public:
+    OpenOfGroup(const AccelState& state, std::span<const Ray> rays, const RayQuery& query,
+                Group& search)
+        : state_(state),
+          rays_(rays),
+          query_(query),
+          search_(search),
+          spheres_(state, rays, query),
+          cones_(state, rays, query) {}
+
+    // Of an object without holes. `Set` is SphereSet or ConeSet.
+    template <typename Set>
+    HWY_INLINE void add(const RayAndPrimitive& open) {
+        if constexpr (std::is_same_v<Set, SphereSet>) {
+            add_to(spheres_, open);
+        } else {
+            add_to(cones_, open);
+        }
+    }
+
+    // Called in the end.
+    void decide_last() {
+        if (!spheres_.empty()) decide(spheres_);
+        if (!cones_.empty()) decide(cones_);
+    }
+
+private:
+    template <typename Elements>
+    HWY_INLINE void add_to(Elements& elements, const RayAndPrimitive& open) {
+        elements.add(open);
+        if (elements.full()) decide(elements);
+    }
+
+    template <typename Elements>
+    HWY_NOINLINE void decide(Elements& elements) {
+        elements.decide(
+            [&](const RayAndPrimitive& open, float t)
+                HWY_ATTR { offer_hit(search_, open.ray, open.object, open.primitive, t); },
+            [&](const RayAndPrimitive& open) HWY_ATTR {
+                auto one = one_of(search_, open.ray, open.object);
+                trace_primitive(state_, open.object, open.primitive, rays_[open.ray], query_, one);
+            });
+    }
+
+    const AccelState& state_;
+    std::span<const Ray> rays_;
+    const RayQuery& query_;
+    Group& search_;
+    OpenElements<SphereSetInstance, SpherePairs, SpheresDecided> spheres_;
+    OpenElements<ConeSetInstance, ConePairs, ConesDecided> cones_;
+};
 
 }  // namespace raypick::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

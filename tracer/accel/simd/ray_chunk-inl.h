@@ -23,14 +23,14 @@ HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Fewer rays than that are no group: through meshes they are quicker apart (see RaysApart),
-// elsewhere a group is better as soon as it isn't given up at once. Rays that go all ways seldom
-// have more in common than their octant.
+// Fewer rays than that are no group, for they are quicker apart (see RaysApart). Rays that go all
+// ways seldom have more in common than their octant. A group of spheres and cones is better as soon
+// as it isn't given up at once.
 inline int fewest_in_group(const AccelState& state, const std::array<RayMask, 8>& octants) {
-    if (!state.mostly_triangles) return kFewRays + 1;
     const auto ways =
         std::count_if(octants.begin(), octants.end(), [](RayMask group) { return group != 0; });
-    return ways > 6 ? 24 : 12;
+    if (state.mostly_triangles) return ways > 6 ? 24 : 12;
+    return ways > 6 ? 12 : kFewRays + 1;
 }
 
 // Rays as they come, and which of them can go in groups.
@@ -64,7 +64,7 @@ struct Chunk {
         const int fewest = fewest_in_group(state, octants);
         for (RayMask& group : octants) {
             if (std::popcount(group) >= fewest) continue;
-            (state.mostly_triangles ? apart : alone) |= group;
+            apart |= group;
             group = 0;
         }
     }

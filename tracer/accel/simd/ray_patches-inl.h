@@ -8,6 +8,7 @@
 #endif
 
 #include "tracer/accel/simd/group_triangles-inl.h"
+#include "tracer/accel/simd/ray_verdict-inl.h"
 #include "tracer/accel/simd/triangle_bounds-inl.h"
 
 #include <array>
@@ -32,12 +33,6 @@ inline bool better_ray_by_ray(const TrianglePatch& patch, RayMask mask) {
     return kHalves * rays * padded < 2 * triangles * vectors * kAtOnce;
 }
 
-template <typename Body>
-HWY_INLINE void each_bit(std::uint32_t mask, const Body& body) {
-    for (; mask != 0; mask &= mask - 1)
-        body(static_cast<std::size_t>(std::countr_zero(mask)));
-}
-
 // Of a patch's triangles that a ray may hit, those that don't just let it go on.
 template <typename Group>
 HWY_INLINE std::uint32_t not_crossed(Group& search, std::uint32_t object,
@@ -49,13 +44,6 @@ HWY_INLINE std::uint32_t not_crossed(Group& search, std::uint32_t object,
     });
     return others;
 }
-
-// What the bounds say of a ray with a patch's triangles; the numbers are those of the sure ones.
-struct PatchVerdict {
-    std::uint32_t may = 0;
-    std::uint32_t sure = 0;
-    HWY_ALIGN std::array<float, TrianglePatch::kMostTriangles> from, to;
-};
 
 HWY_INLINE TriangleFloats dots(const GroupTriangles::Vectors& v, std::size_t first,
                                const TriangleFloats& x, const TriangleFloats& y,
@@ -108,7 +96,7 @@ struct SomeVerdict {
 HWY_INLINE SomeVerdict judge_functions(const EdgeFunctions<TriangleFloats>& f,
                                        const TriangleErrors& errors, float t_min, float t_far,
                                        const ShownSides& shown, std::size_t first,
-                                       PatchVerdict& verdict) {
+                                       RayVerdict& verdict) {
     const Triangles d;
     const EdgeBounded<Triangles> edges(f, errors.edge);
     std::uint32_t may = ~triangle_bits(edges.misses(shown)) & ((1u << kTrianglesAtOnce) - 1u);
@@ -129,7 +117,7 @@ HWY_INLINE SomeVerdict judge_functions(const EdgeFunctions<TriangleFloats>& f,
 
 // judge_some(first) is asked for all triangles of a patch.
 template <typename Some>
-HWY_INLINE void judge_all_of_patch(std::size_t triangles, PatchVerdict& verdict,
+HWY_INLINE void judge_all_of_patch(std::size_t triangles, RayVerdict& verdict,
                                    const Some& judge_some) {
     SomeVerdict all;
     for (std::size_t first = 0; first < triangles; first += kTrianglesAtOnce) {
@@ -146,7 +134,7 @@ HWY_INLINE void judge_all_of_patch(std::size_t triangles, PatchVerdict& verdict,
 HWY_INLINE void judge_patch_of_ray(const GroupRays& rays, const GroupLimits& limits,
                                    std::size_t ray, const GroupTriangles& all,
                                    std::size_t triangles, const ShownSides& shown,
-                                   PatchVerdict& verdict) {
+                                   RayVerdict& verdict) {
     judge_all_of_patch(triangles, verdict, [&](std::size_t first) HWY_ATTR {
         const Triangles d;
         const TriangleErrors errors{hn::Load(d, all.edge_error.data() + first),
@@ -170,7 +158,7 @@ HWY_INLINE TriangleVectors same(const glm::vec3& v) {
 // registers. `steepest` is the direction's largest component; the patch is in the ray's space.
 HWY_INLINE void judge_patch_alone(const Ray& ray, float steepest, float t_far,
                                   const TrianglePatch& patch, const ShownSides& shown,
-                                  PatchVerdict& verdict) {
+                                  RayVerdict& verdict) {
     judge_all_of_patch(patch.triangles, verdict, [&](std::size_t first) HWY_ATTR {
         const PatchCorners corners(patch, first);
         const TriangleVectors edge_b = corners.b - corners.a;
@@ -220,25 +208,18 @@ HWY_INLINE void take_one(ClosestOfGroup& search, std::size_t ray, float from, fl
     }
 }
 
-// A triangle of a patch that a ray met alone.
-struct MetAlone {
-    const Instance& instance;
-    std::uint32_t object;  // index
-    const TrianglePatch& patch;
-    std::size_t i;
-};
-
-// The same of such a triangle, in a place that is the ray's own.
-HWY_INLINE void take_alone(ClosestOfGroup& search, std::size_t ray, float from, float to,
-                           const MetAlone& met) {
-    if (from > search.limits.t_far[ray]) return;
-    const std::uint32_t primitive = met.patch.primitives()[met.i];
-    if (!precedes_candidate(search, ray, from, to, met.object, primitive)) return;
+// The same of what ray `ray` met alone, in a place that is the ray's own. Returns that, if it took
+// it.
+HWY_INLINE Candidate* take_alone(ClosestOfGroup& search, std::size_t ray, float from, float to,
+                                 std::uint32_t object, std::uint32_t primitive) {
+    if (from > search.limits.t_far[ray]) return nullptr;
+    if (!precedes_candidate(search, ray, from, to, object, primitive)) return nullptr;
     const std::size_t place = ClosestOfGroup::kMostCandidates + ray;
     search.candidate[ray] = static_cast<std::uint32_t>(place);
-    search.candidates[place].object = met.object;
+    search.candidates[place].object = object;
     search.candidates[place].primitive = primitive;
-    keep_corners(met.patch, met.i, met.instance, search.candidates[place]);
+    search.candidates[place].instance = nullptr;
+    return &search.candidates[place];
 }
 
 }  // namespace raypick::HWY_NAMESPACE

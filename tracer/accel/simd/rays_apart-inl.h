@@ -8,6 +8,7 @@
 #endif
 
 #include "tracer/accel/simd/group_search-inl.h"
+#include "tracer/accel/simd/open_elements-inl.h"
 #include "tracer/accel/simd/ray_patches-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
 
@@ -34,7 +35,11 @@ class RaysApart {
 public:
     RaysApart(const AccelState& state, std::span<const Ray> rays, const RayQuery& query,
               Group& search)
-        : state_(state), rays_(rays), query_(query), search_(search) {}
+        : state_(state),
+          rays_(rays),
+          query_(query),
+          search_(search),
+          open_(state, rays, query, search) {}
 
     // The mask's rays, for which what is said of groups holds but that they go one way.
     void run(RayMask mask) {
@@ -45,22 +50,32 @@ public:
             });
         }
         if (state_.top.empty()) return;
-        if (const TopEntry* only = only_mesh()) {
+        if (const TopEntry* only = only_tree()) {
             run_in(*only, mask);
-            return;
+        } else {
+            run_down(state_.top.root, mask);
         }
+    }
+
+    // The same down a part of the top tree.
+    void run_down(const WideRef& part, RayMask mask) {
         follow(mask, [&](Way& way) HWY_ATTR {
-            way.stack.push(-std::numeric_limits<float>::infinity(), state_.top.root.bits);
+            way.stack.push(-std::numeric_limits<float>::infinity(), part.bits);
             go_to_top(way);
         });
     }
 
-    // The same through a mesh that stands in the world's space, or a part of it.
+    // The same through an object that takes_apart(), or a part of it.
     void run_in(const TopEntry& entry, RayMask mask) {
         follow(mask, [&](Way& way) HWY_ATTR {
-            enter_mesh(way, entry);
+            enter_tree(way, entry);
             way.is_last = true;
         });
+    }
+
+    // Whether it has a tree that stands in the world's space.
+    [[nodiscard]] static bool takes_apart(const Instance& instance) {
+        return instance.joined() || (instance.identity && instance.tree != nullptr);
     }
 
 private:
@@ -72,12 +87,14 @@ private:
     struct Way {
         std::size_t ray;
         const WideNode* nodes;      // of the tree that it is in
-        const PrimitiveTree* mesh;  // null in the top tree
+        const PrimitiveTree* tree;  // null in the top tree
         const Instance* instance;
         std::uint32_t object;
+        const std::byte* leaves;  // where the tree keeps what they hold
+        std::size_t leaf_size;
         WideRef at;
         std::size_t base;  // what waits below is of the top tree
-        bool is_last;      // the mesh is all that there is
+        bool is_last;      // the tree is all that there is
         float t_min;
         float steepest;  // the direction's largest component
         std::optional<SlabRay> slabs;
@@ -120,6 +137,7 @@ private:
                 if (goes_on(way, pending, start)) put(way, at_nodes, at_leaves);
             }
         }
+        open_.decide_last();
     }
 
     // With the lowest ray of the mask.
@@ -145,17 +163,17 @@ private:
             way.at = {way.stack.ref[--way.stack.count]};
             return true;
         }
-        while (!goes_on_from_mesh(way)) {
+        while (!goes_on_from_tree(way)) {
             if (pending == 0) return false;
             begin(way, pending, start);
         }
         return true;
     }
 
-    // A place beyond it, if it has no more of this mesh.
-    HWY_NOINLINE bool goes_on_from_mesh(Way& way) {
+    // A place beyond it, if it has no more of this tree.
+    HWY_NOINLINE bool goes_on_from_tree(Way& way) {
         for (;;) {
-            if (way.mesh != nullptr && way.stack.count > way.base) {
+            if (way.tree != nullptr && way.stack.count > way.base) {
                 way.at = {way.stack.ref[--way.stack.count]};
                 return true;
             }
@@ -181,23 +199,28 @@ private:
 
     static HWY_INLINE void fetch(const Way& way) {
         const void* place = &way.nodes[way.at.index()];
-        if (way.at.is_leaf()) place = &way.mesh->patches.blocks[way.at.index()];
+        if (way.at.is_leaf()) place = way.leaves + way.at.index() * way.leaf_size;
         const auto* line = static_cast<const std::byte*>(place);
         for (std::size_t i = 0; i < 4; ++i)
             __builtin_prefetch(line + 64 * i);
     }
 
     void go_to_top(Way& way) const {
-        way.mesh = nullptr;
+        way.tree = nullptr;
         way.base = kInTop;
         way.nodes = state_.top.nodes.data();
     }
 
-    HWY_INLINE void enter_mesh(Way& way, const TopEntry& entry) const {
+    HWY_INLINE void enter_tree(Way& way, const TopEntry& entry) const {
         way.object = entry.object;
         way.instance = &state_.instances[entry.object];
-        way.mesh = way.instance->tree;
-        way.nodes = way.mesh->bvh.nodes.data();
+        way.tree = way.instance->tree;
+        way.nodes = way.tree->bvh.nodes.data();
+        const bool of_set = !way.tree->bvh.indices.empty();
+        way.leaves = of_set ? std::as_bytes(std::span(way.tree->bvh.indices)).data()
+                            : std::as_bytes(std::span(way.tree->patches.blocks)).data();
+        way.leaf_size =
+            of_set ? sizeof(way.tree->bvh.indices[0]) : sizeof(way.tree->patches.blocks[0]);
         way.base = way.stack.count;
         way.stack.push(-std::numeric_limits<float>::infinity(), entry.part.bits);
     }
@@ -206,8 +229,8 @@ private:
     HWY_NOINLINE void enter_objects(Way& way) {
         const std::uint32_t index = state_.top.indices[way.at.index()];
         const TopEntry& first = state_.entries[index & ~WideBvh::kLast];
-        if ((index & WideBvh::kLast) != 0 && goes_into(first)) {
-            enter_mesh(way, first);
+        if ((index & WideBvh::kLast) != 0 && takes_apart(state_.instances[first.object])) {
+            enter_tree(way, first);
             return;
         }
         each_index(state_.top, way.at, [&](std::uint32_t number) HWY_ATTR {
@@ -217,18 +240,12 @@ private:
         });
     }
 
-    [[nodiscard]] const TopEntry* only_mesh() const {
+    [[nodiscard]] const TopEntry* only_tree() const {
         if (!state_.top.root.is_leaf()) return nullptr;
         const std::uint32_t index = state_.top.indices[state_.top.root.index()];
         const TopEntry& entry = state_.entries[index & ~WideBvh::kLast];
-        return (index & WideBvh::kLast) != 0 && goes_into(entry) ? &entry : nullptr;
-    }
-
-    [[nodiscard]] bool goes_into(const TopEntry& entry) const {
-        const Instance& instance = state_.instances[entry.object];
-        if (instance.joined()) return true;
-        return instance.identity &&
-               std::holds_alternative<MeshInstance>(state_.scene->objects[entry.object].shape);
+        const bool is_only = (index & WideBvh::kLast) != 0;
+        return is_only && takes_apart(state_.instances[entry.object]) ? &entry : nullptr;
     }
 
     RayInSpace& space_of(Way& way) const {
@@ -238,10 +255,7 @@ private:
 
     HWY_INLINE void search_leaf(Way& way) {
         const float before = search_.limits.t_far[way.ray];
-        const bool ends = each_patch(way.mesh->patches, way.at,
-                                     [&](const TrianglePatch& patch)
-                                         HWY_ATTR { return search_patch(way, patch); });
-        if (ends) {
+        if (search_primitives(way)) {
             way.stack.count = way.base = 0;
             way.is_last = true;
             return;
@@ -250,10 +264,68 @@ private:
         if (far < before) way.stack.drop_beyond(far, way.base);
     }
 
+    // Of a leaf. True: the ray has ended.
+    HWY_INLINE bool search_primitives(Way& way) {
+        if (way.tree->bvh.indices.empty()) {
+            return each_patch(way.tree->patches, way.at, [&](const TrianglePatch& patch) HWY_ATTR {
+                return search_patch(way, patch);
+            });
+        }
+        const Object& object = state_.scene->objects[way.object];
+        if ((object.mask & query_.mask) == 0) return false;
+        if (const auto* spheres = std::get_if<SphereSetInstance>(&object.shape)) {
+            return search_elements(way, object, state_.scene->sphere_sets[spheres->set],
+                                   SphereFilter(rays_[way.ray]));
+        }
+        const auto& cones = std::get<ConeSetInstance>(object.shape);
+        return search_elements(way, object, state_.scene->cone_sets[cones.set],
+                               ConeFilter(rays_[way.ray], way.steepest));
+    }
+
+    // Of a leaf of a set.
+    template <typename Set, typename Filter>
+    HWY_INLINE bool search_elements(Way& way, const Object& object, const Set& set,
+                                    const Filter& filter) {
+        const std::span<const std::uint32_t> leaf = indices_of(way.tree->bvh, way.at);
+        const bool front = shows(object.sides, true) && shows(query_.sides, true);
+        const bool back = shows(object.sides, false) && shows(query_.sides, false);
+        for (std::size_t i = 0; i < leaf.size(); i += Filter::kAtOnce) {
+            const auto some = leaf.subspan(i, std::min(Filter::kAtOnce, leaf.size() - i));
+            RayVerdict verdict;
+            filter.judge(set, some, search_.limits.t_far[way.ray], front, back, verdict);
+            if (verdict.may != 0 && settle_elements<Set>(way, some, verdict)) return true;
+        }
+        return false;
+    }
+
+    template <typename Set>
+    HWY_NOINLINE bool settle_elements(Way& way, std::span<const std::uint32_t> some,
+                                      const RayVerdict& verdict) {
+        const bool holes = way.instance->holes;
+        bool ends = false;
+        each_bit(verdict.may, [&](std::size_t i) HWY_ATTR {
+            const std::uint32_t primitive = some[i] & ~WideBvh::kLast;
+            if (crossed(search_, way.object, primitive, RayMask{1} << way.ray)) return;
+            if (holes) {
+                auto one = one_of(search_, way.ray, way.object);
+                ends |= trace_primitive(state_, way.object, primitive, rays_[way.ray], query_, one);
+            } else if ((verdict.sure >> i & 1u) == 0) {
+                open_.template add<Set>(
+                    {static_cast<std::uint32_t>(way.ray), way.object, primitive});
+            } else if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
+                take_alone(search_, way.ray, verdict.from[i], verdict.to[i], way.object, primitive);
+            } else {
+                search_.block(RayMask{1} << way.ray);
+                ends = true;
+            }
+        });
+        return ends;
+    }
+
     // True: the ray has ended.
     HWY_INLINE bool search_patch(Way& way, const TrianglePatch& patch) {
         // Most are missed: whose it is comes afterwards.
-        PatchVerdict verdict;
+        RayVerdict verdict;
         judge(way, patch, {}, verdict);
         if (verdict.may == 0) return false;
         const std::uint32_t index =
@@ -269,21 +341,22 @@ private:
     }
 
     HWY_INLINE void judge(const Way& way, const TrianglePatch& patch, const ShownSides& shown,
-                          PatchVerdict& verdict) const {
+                          RayVerdict& verdict) const {
         judge_patch_alone(rays_[way.ray], way.steepest, search_.limits.t_far[way.ray], patch, shown,
                           verdict);
     }
 
     // True: the ray has ended.
     HWY_INLINE bool settle(Way& way, std::uint32_t object, const TrianglePatch& patch,
-                           const PatchVerdict& verdict) {
+                           const RayVerdict& verdict) {
         const Instance& instance = state_.instances[object];
         const std::uint32_t may = not_crossed(search_, object, patch, verdict.may, way.ray);
         const std::uint32_t sure = instance.holes ? 0u : verdict.sure & may;
         if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
             each_bit(sure, [&](std::size_t i) HWY_ATTR {
-                take_alone(search_, way.ray, verdict.from[i], verdict.to[i],
-                           {instance, object, patch, i});
+                Candidate* kept = take_alone(search_, way.ray, verdict.from[i], verdict.to[i],
+                                             object, patch.primitives()[i]);
+                if (kept != nullptr) keep_corners(patch, i, instance, *kept);
             });
         } else if (sure != 0) {
             search_.block(RayMask{1} << way.ray);
@@ -308,6 +381,7 @@ private:
     std::span<const Ray> rays_;
     const RayQuery& query_;
     Group& search_;
+    OpenOfGroup<Group> open_;
 };
 
 }  // namespace raypick::HWY_NAMESPACE

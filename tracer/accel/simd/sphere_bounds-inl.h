@@ -60,6 +60,46 @@ struct SphereSpan {
     }
 };
 
+// What the bounds say of the first hit between t_min and t_far on a side that counts, after
+// depth's error, E, let the lane through.
+template <class D, class V = hn::Vec<D>, class M = hn::Mask<D>>
+struct SphereCrossing {
+    M misses;
+    M sure;  // that the first one lies between these
+    V from, to;
+
+    // Arranged so that a NaN neither rules anything out nor makes it sure.
+    HWY_INLINE SphereCrossing(const SphereSpan<D>& span, V depth_error, V t_min, V t_far,
+                              bool front, bool back) {
+        const D d;
+        const auto grow = hn::Set(d, 1.0f + 8.0f * 0x1p-24f);
+        const auto shrink = hn::Set(d, 1.0f - 8.0f * 0x1p-24f);
+        const auto beyond = [&](const V& t) HWY_ATTR {
+            return hn::Gt(hn::Sub(t, span.error), hn::Mul(t_far, grow));
+        };
+        const auto before = [&](const V& t) HWY_ATTR {
+            return hn::Lt(hn::Add(t, span.error), hn::Mul(t_min, shrink));
+        };
+        const auto within = [&](const V& t) HWY_ATTR {
+            return hn::And(hn::Gt(hn::Mul(hn::Sub(t, span.error), shrink), t_min),
+                           hn::Lt(hn::Mul(hn::Add(t, span.error), grow), t_far));
+        };
+        const auto never = hn::Lt(t_min, t_min);
+        const auto always = hn::Not(never);
+        const auto no_enter = front ? hn::Or(beyond(span.enter), before(span.enter)) : always;
+        const auto no_leave = back ? hn::Or(beyond(span.leave), before(span.leave)) : always;
+        misses = hn::And(no_enter, no_leave);
+        const auto deep = hn::Gt(span.depth, hn::Mul(depth_error, hn::Set(d, 16.0f)));
+        const auto enters = front ? within(span.enter) : never;
+        const auto gone = front ? before(span.enter) : always;
+        const auto leaves = back ? hn::And(gone, within(span.leave)) : never;
+        sure = hn::And(deep, hn::Or(enters, leaves));
+        const auto t = hn::IfThenElse(enters, span.enter, span.leave);
+        from = hn::Mul(hn::Sub(t, span.error), shrink);
+        to = hn::Mul(hn::Add(t, span.error), grow);
+    }
+};
+
 // Of the reach F and the radius.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void set_sphere_errors(D d, V reach, V radius, SphereLanes<V>& to) {

@@ -1,5 +1,5 @@
-// Spheres that a ray surely misses, several at a time: see sphere_bounds-inl.h. Included once for
-// each instruction set.
+// Spheres that a ray surely misses, or surely hits, several at a time: see sphere_bounds-inl.h.
+// Included once for each instruction set.
 #if defined(RAYPICK_SPHERE_FILTER_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RAYPICK_SPHERE_FILTER_INL_H
 #undef RAYPICK_SPHERE_FILTER_INL_H
@@ -7,6 +7,7 @@
 #define RAYPICK_SPHERE_FILTER_INL_H
 #endif
 
+#include "tracer/accel/simd/ray_verdict-inl.h"
 #include "tracer/accel/simd/sphere_bounds-inl.h"
 #include "tracer/bvh/wide_bvh.h"
 #include "tracer/scene/scene.h"
@@ -41,6 +42,10 @@ public:
         idle_ = !(reach < 1e11f && steepest > 1e-6f && steepest < 1e6f);
     }
 
+    // The same of a ray as it came, with nothing beyond what bounds hold for.
+    explicit SphereFilter(const Ray& ray)
+        : origin_(ray.origin), direction_(ray.direction), t_min_(ray.t_min) {}
+
     // Of as many spheres as one instruction takes at most those that the ray may hit at a t of at
     // most `limit`, as a mask.
     HWY_INLINE std::uint32_t may_hit(const SphereSet& set,
@@ -58,13 +63,35 @@ public:
             hn::Gt(hn::Sub(span.enter, span.error), hn::Mul(hn::Set(d, limit), grow));
         const auto before =
             hn::Lt(hn::Add(span.leave, span.error), hn::Mul(hn::Set(d, t_min_), shrink));
-        std::uint8_t stored[8] = {};
-        hn::StoreMaskBits(d, hn::Or(beside, hn::Or(beyond, before)), stored);
-        return all & ~std::uint32_t{stored[0]};
+        return all & ~bits(hn::Or(beside, hn::Or(beyond, before)));
+    }
+
+    // Of such spheres, which of them it hits first on a side that counts. Unless it is idle.
+    HWY_INLINE void judge(const SphereSet& set, std::span<const std::uint32_t> primitives,
+                          float limit, bool front, bool back, RayVerdict& verdict) const {
+        const Spheres d;
+        const SphereLanes<Floats> at = lanes(set, primitives);
+        const SphereSpan<Spheres> span(at);
+        verdict.may =
+            ((1u << primitives.size()) - 1u) & ~bits(hn::Lt(span.depth, hn::Neg(at.error)));
+        if (verdict.may == 0) return;
+        const SphereCrossing<Spheres> crossing(span, at.error, hn::Set(d, t_min_),
+                                               hn::Set(d, limit), front, back);
+        verdict.may &= ~bits(crossing.misses);
+        if (verdict.may == 0) return;
+        verdict.sure = verdict.may & bits(crossing.sure);
+        hn::Store(crossing.from, d, verdict.from.data());
+        hn::Store(crossing.to, d, verdict.to.data());
     }
 
 private:
     using Floats = hn::Vec<Spheres>;
+
+    static HWY_INLINE std::uint32_t bits(const hn::Mask<Spheres>& mask) {
+        std::uint8_t stored[8] = {};
+        hn::StoreMaskBits(Spheres(), mask, stored);
+        return stored[0];
+    }
 
     HWY_INLINE SphereLanes<Floats> lanes(const SphereSet& set,
                                          std::span<const std::uint32_t> primitives) const {
@@ -94,7 +121,7 @@ private:
 
     glm::vec3 origin_, direction_;
     float t_min_;
-    float rounding_;
+    float rounding_ = 0.0f;
     bool idle_ = false;
 };
 
