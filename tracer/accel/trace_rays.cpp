@@ -46,7 +46,7 @@ void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::s
                       const RayQuery& query) {
     const Chunk chunk(state, rays, query);
     RayMask alone = chunk.alone;
-    RayMask missed = ~RayMask{0};
+    RayMask missed = first_rays(rays.size());
     const auto find = [&](const auto& follow) HWY_ATTR {
         ClosestOfGroup search;
         search.limits = chunk.limits;
@@ -65,9 +65,7 @@ void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::s
         find([&](ClosestOfGroup& search)
                  HWY_ATTR { RaysApart(state, rays, query, search).run(chunk.apart); });
     }
-    for (std::size_t ray = 0; ray < rays.size(); ++ray) {
-        if (((missed >> ray) & 1) != 0) hits[ray] = Hit{};
-    }
+    each_ray(missed, [&](std::size_t ray) HWY_ATTR { hits[ray] = Hit{}; });
     each_ray(alone, [&](std::size_t ray) HWY_ATTR {
         hits[ray] = HWY_NAMESPACE::closest_hit(state, rays[ray], query).value_or(Hit{});
     });

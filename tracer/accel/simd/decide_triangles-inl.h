@@ -94,22 +94,22 @@ struct TriangleColumns {
     // Of rays from `first` on, all with the same triangle.
     HWY_INLINE TriangleColumns(const GroupRays& rays, std::size_t first,
                                const TriangleCorners& corners) {
-        const Doubles d;
-        const hn::Rebind<float, Doubles> of_float;
-        const auto load = [&](const GroupFloats& numbers) HWY_ATTR {
-            return hn::PromoteTo(d, hn::LoadU(of_float, numbers.data() + first));
-        };
+        set_rays(rays, first);
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            origin[axis] = load(rays.origin[axis]);
-            direction[axis] = load(rays.direction[axis]);
             for (std::size_t k = 0; k < 3; ++k)
-                corner[k][axis] = hn::Set(d, static_cast<double>(corners[k][axis]));
+                corner[k][axis] = hn::Set(Doubles(), static_cast<double>(corners[k][axis]));
         }
     }
 
+    // The same with a triangle of the pairs' each.
+    HWY_INLINE TriangleColumns(const GroupRays& rays, std::size_t first,
+                               const TrianglePairs& pairs) {
+        set_corners(pairs);
+        set_rays(rays, first);
+    }
+
     HWY_INLINE explicit TriangleColumns(const TrianglePairs& pairs) {
-        for (std::size_t k = 0; k < 3; ++k)
-            set_corner(pairs.corners[k], corner[k]);
+        set_corners(pairs);
 #if HWY_TARGET == HWY_SCALAR
         for (std::size_t axis = 0; axis < 3; ++axis) {
             origin[axis] = hn::Load(Doubles(), &pairs.rays[0][axis]);
@@ -132,6 +132,23 @@ struct TriangleColumns {
     }
 
 private:
+    HWY_INLINE void set_rays(const GroupRays& rays, std::size_t first) {
+        const Doubles d;
+        const hn::Rebind<float, Doubles> of_float;
+        const auto load = [&](const GroupFloats& numbers) HWY_ATTR {
+            return hn::PromoteTo(d, hn::LoadU(of_float, numbers.data() + first));
+        };
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            origin[axis] = load(rays.origin[axis]);
+            direction[axis] = load(rays.direction[axis]);
+        }
+    }
+
+    HWY_INLINE void set_corners(const TrianglePairs& pairs) {
+        for (std::size_t k = 0; k < 3; ++k)
+            set_corner(pairs.corners[k], corner[k]);
+    }
+
     HWY_INLINE static void set_corner(const TrianglePairs::Rows<TrianglePairs::CornerRow>& rows,
                                       DoubleVector (&to)[3]) {
         const Doubles d;

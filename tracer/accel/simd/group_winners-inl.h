@@ -63,35 +63,51 @@ public:
     }
 
 private:
-    // As many neighbours with one candidate are decided where they are.
-    static constexpr int kWorthwhile = 6;
+    // As many neighbours are decided where they are, without a row for each.
+    static constexpr int kWorthwhile = static_cast<int>(kDoublesAtOnce + 1) / 2;
 
     // Returns the others.
     RayMask decide_neighbours(RayMask mask) {
+        constexpr RayMask kSome = (RayMask{1} << kDoublesAtOnce) - 1;
         RayMask others = mask;
-        each_vector(mask, [&](std::size_t first, RayMask bits) HWY_ATTR {
-            for (RayMask some = bits << first; some != 0;) {
-                const auto ray = static_cast<std::size_t>(std::countr_zero(some));
-                const RayMask alike =
-                    some & (with_candidate(first, search_.candidate[ray]) << first);
-                some &= ~alike;
-                if (std::popcount(alike) < kWorthwhile) continue;
-                const Candidate& candidate = search_.candidate_of(ray);
-                if (candidate.instance == nullptr || !candidate.instance->identity) continue;
-                others &= ~alike;
-                decide_alike(world_, alike, candidate.corners,
-                             [&](std::size_t i, const TriangleAnswers& answers, std::size_t lane)
-                                 HWY_ATTR { settle(i, answers, lane); });
-            }
-        });
+        TriangleAnswers answers;
+        for (std::size_t first = 0; first < kGroup; first += kDoublesAtOnce) {
+            const RayMask some = in_world(first, (mask >> first) & kSome);
+            if (std::popcount(some) < kWorthwhile) continue;
+            others &= ~(some << first);
+            decide_in_place(first, some, answers);
+            each_ray(some, [&](std::size_t lane) HWY_ATTR { settle(first + lane, answers, lane); });
+        }
         return others;
     }
 
-    [[nodiscard]] HWY_INLINE RayMask with_candidate(std::size_t first, std::uint32_t place) const {
-        const Rays d;
-        const hn::Rebind<std::uint32_t, Rays> du;
-        const auto places = hn::Load(du, search_.candidate.data() + first);
-        return ray_bits(hn::RebindMask(d, hn::Eq(places, hn::Set(du, place))));
+    // Of the mask's rays, counted from `first` on, those whose triangle is kept in world space.
+    [[nodiscard]] HWY_INLINE RayMask in_world(std::size_t first, RayMask mask) const {
+        RayMask result = mask;
+        each_ray(mask, [&](std::size_t lane) HWY_ATTR {
+            const Instance* instance = search_.candidate_of(first + lane).instance;
+            if (instance == nullptr || !instance->identity) result &= ~(RayMask{1} << lane);
+        });
+        return result;
+    }
+
+    HWY_INLINE void decide_in_place(std::size_t first, RayMask mask, TriangleAnswers& answers) {
+        const auto some = static_cast<std::size_t>(std::countr_zero(mask));
+        const Candidate& one = search_.candidate_of(first + some);
+        bool alike = true;
+        each_ray(mask, [&](std::size_t lane)
+                           HWY_ATTR { alike &= &search_.candidate_of(first + lane) == &one; });
+        if (alike) {
+            HWY_NAMESPACE::decide(TriangleColumns(world_, first, one.corners), answers);
+            return;
+        }
+        for (std::size_t lane = 0; lane < kDoublesAtOnce; ++lane) {
+            const bool is_there = ((mask >> lane) & 1) != 0;
+            const Candidate& candidate = is_there ? search_.candidate_of(first + lane) : one;
+            for (std::size_t k = 0; k < 3; ++k)
+                pairs_.corners[k][lane] = candidate.corners[k];
+        }
+        HWY_NAMESPACE::decide(TriangleColumns(world_, first, pairs_), answers);
     }
 
     HWY_INLINE bool set(std::size_t ray, TrianglePairs& pairs, std::size_t lane) {
@@ -134,6 +150,7 @@ private:
     const GroupRays& world_;
     std::span<const Ray> rays_;
     std::span<Hit> hits_;
+    TrianglePairs pairs_;  // corners only
     RayMask left_ = 0;
 };
 

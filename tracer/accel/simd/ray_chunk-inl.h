@@ -55,7 +55,7 @@ struct Chunk {
             for (std::size_t i = 0; i < kGroup; ++i)
                 set(i, i < rays.size() ? rays[i] : rays[0]);
         }
-        const RayMask there = rays.size() == kGroup ? ~RayMask{0} : (RayMask{1} << rays.size()) - 1;
+        const RayMask there = first_rays(rays.size());
         const RayMask groupable = there & ordinary();
         each_ray(there & ~groupable,
                  [&](std::size_t i) HWY_ATTR { alone |= RayMask{usable(rays[i]) ? 1u : 0u} << i; });

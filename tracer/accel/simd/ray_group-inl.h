@@ -29,6 +29,11 @@ inline constexpr std::size_t kGroup = 64;
 using GroupFloats = std::array<float, kGroup>;
 using RayMask = std::uint64_t;  // bit i: ray i
 
+// Up to kGroup of them.
+inline RayMask first_rays(std::size_t count) {
+    return count == kGroup ? ~RayMask{0} : (RayMask{1} << count) - 1;
+}
+
 // As many rays of a group as one instruction takes.
 using Rays = hn::CappedTag<float, 16>;
 using RayFloats = hn::Vec<Rays>;
