@@ -31,6 +31,9 @@ using Doubles = hn::CappedTag<double, 8>;
 using DoubleVector = hn::Vec<Doubles>;
 inline constexpr std::size_t kDoublesAtOnce = hn::MaxLanes(Doubles());
 
+// As many neighbours in a group are decided where they are, without a row for each.
+inline constexpr int kWorthInPlace = static_cast<int>(kDoublesAtOnce + 1) / 2;
+
 // By corner and axis; the fourth is nobody's.
 using TriangleCorners = std::array<std::array<float, 4>, 3>;
 

@@ -63,9 +63,6 @@ public:
     }
 
 private:
-    // As many neighbours are decided where they are, without a row for each.
-    static constexpr int kWorthwhile = static_cast<int>(kDoublesAtOnce + 1) / 2;
-
     // Returns the others.
     RayMask decide_neighbours(RayMask mask) {
         constexpr RayMask kSome = (RayMask{1} << kDoublesAtOnce) - 1;
@@ -73,7 +70,7 @@ private:
         TriangleAnswers answers;
         for (std::size_t first = 0; first < kGroup; first += kDoublesAtOnce) {
             const RayMask some = in_world(first, (mask >> first) & kSome);
-            if (std::popcount(some) < kWorthwhile) continue;
+            if (std::popcount(some) < kWorthInPlace) continue;
             others &= ~(some << first);
             decide_in_place(first, some, answers);
             each_ray(some, [&](std::size_t lane) HWY_ATTR { settle(first + lane, answers, lane); });
@@ -161,7 +158,7 @@ inline void decide_winners(const AccelState& state, const ClosestOfGroup& search
     const RayMask sole = search.found & ~search.rivalled;
     const RayMask elements = SoleTriangles(state, search, world, rays, hits).decide(sole);
     RayMask open = search.rivalled & ~search.lost;
-    open |= decide_sole_elements(state, search, elements, rays, query, hits);
+    open |= decide_sole_elements(state, search, elements, world, rays, query, hits);
     each_ray(open, [&](std::size_t ray)
                        HWY_ATTR { choose(state, search, ray, rays[ray], query, hits[ray]); });
 }
