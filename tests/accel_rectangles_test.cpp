@@ -44,6 +44,25 @@ TEST_P(AccelRectangles, ShareTheirEdges) {
     expect_as_one_by_one(accel, rays);
 }
 
+// Rays exactly through an edge, where the last bit of a quotient says on which side they pass.
+TEST_P(AccelRectangles, AreHitOrMissedOnTheirEdges) {
+    for (const float z : {0.75f, 1.25f, 1.5f, 1.75f}) {
+        for (int i = 1; i <= 32; ++i) {
+            const float x = static_cast<float>(i) / 512.0f;
+            const glm::dvec3 on_edge(2.0 * static_cast<double>(x), -1.0,
+                                     2.0 * static_cast<double>(z));
+            Scene scene;
+            place(scene, Rectangle{on_edge, {1.0, 0.0, 0.0}, {0.0, 2.0, 0.0}});
+            place(scene,
+                  Rectangle{on_edge + glm::dvec3(0.0, 0.0, 1.0), {3.0, 0.0, 0.0}, {0.0, 2.0, 0.0}});
+            Ray ray;
+            ray.direction = {x, 0.0f, z};
+            expect_as_one_by_one(accel_of(scene), std::vector<Ray>(64, ray), {}, Hits::perhaps);
+            if (HasFatalFailure()) return;
+        }
+    }
+}
+
 TEST_P(AccelRectangles, AreSeenFromEitherSideOrOne) {
     Scene scene;
     for (const Rectangle& wall : room()) {

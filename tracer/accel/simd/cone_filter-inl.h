@@ -9,6 +9,7 @@
 
 #include "tracer/accel/simd/cone_bounds-inl.h"
 #include "tracer/accel/simd/ray_verdict-inl.h"
+#include "tracer/accel/simd/triangle_bounds-inl.h"
 #include "tracer/bvh/wide_bvh.h"
 #include "tracer/scene/scene.h"
 
@@ -37,6 +38,7 @@ HWY_INLINE FourFloats four(float a, float b, float c, float d) {
 class ConeFilter {
 public:
     static constexpr std::size_t kAtOnce = hn::MaxLanes(Four());
+    static_assert(kAtOnce <= RayVerdict::kMost);
 
     // `reach` is the largest coordinate of the ray's origin and of the cones, `rounded` says that
     // the origin was rounded to float.
@@ -72,7 +74,7 @@ public:
 
     // Of such cones, which of them it hits first on a side that counts. Unless it is idle.
     HWY_INLINE void judge(const ConeSet& set, std::span<const std::uint32_t> primitives,
-                          float limit, bool front, bool back, RayVerdict& verdict) const {
+                          float limit, const ShownSides& shown, RayVerdict& verdict) const {
         const ConeLanes<FourFloats> cones = lanes(set, primitives);
         const RayLanes<FourFloats> ray = ray_lanes(limit);
         ConeBounds<Four> bounds(cones, ray);
@@ -81,7 +83,7 @@ public:
         bounds.estimate();
         verdict.may &= ~bits(bounds.misses());
         if (verdict.may == 0) return;
-        const auto crossing = bounds.crossing(front, back, set.capped);
+        const auto crossing = bounds.crossing(shown.front, shown.back, set.capped);
         verdict.sure = verdict.may & bits(crossing.sure);
         hn::Store(crossing.from, Four(), verdict.from.data());
         hn::Store(crossing.to, Four(), verdict.to.data());

@@ -126,10 +126,7 @@ private:
     [[nodiscard]] HWY_INLINE hn::Mask<Doubles> passes_within() const {
         const Doubles d;
         const DoubleVector direction[3] = {direction_.x, direction_.y, direction_.z};
-        const ShearedAxes axes(direction);
-        const DoubleVector along = axes.z_of(direction);
-        const DoubleVector sx = hn::Div(axes.x_of(direction), along);
-        const DoubleVector sy = hn::Div(axes.y_of(direction), along);
+        const Shear shear(direction);
         const DoubleVector3 b = plus(corner_, edge_u_);
         const DoubleVector3 corners[4] = {corner_, b, plus(b, edge_v_), plus(corner_, edge_v_)};
         DoubleVector x[4];
@@ -137,9 +134,9 @@ private:
         for (std::size_t i = 0; i < 4; ++i) {
             const DoubleVector3 from = minus(corners[i], origin_);
             const DoubleVector from_ray[3] = {from.x, from.y, from.z};
-            const DoubleVector ahead = axes.z_of(from_ray);
-            x[i] = hn::Sub(axes.x_of(from_ray), hn::Mul(sx, ahead));
-            y[i] = hn::Sub(axes.y_of(from_ray), hn::Mul(sy, ahead));
+            const DoubleVector ahead = shear.axes.z_of(from_ray);
+            x[i] = shear.across_x(from_ray, ahead);
+            y[i] = shear.across_y(from_ray, ahead);
         }
         const DoubleVector zero = hn::Zero(d);
         auto left = hn::Eq(zero, zero);

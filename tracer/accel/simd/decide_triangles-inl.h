@@ -44,7 +44,8 @@ struct TrianglePairs {
     template <typename Element>
     using Rows = std::array<Element, kDoublesAtOnce>;
     HWY_ALIGN Rows<Row> rays;
-    HWY_ALIGN std::array<Rows<CornerRow>, 3> corners;
+    using CornerRows = std::array<Rows<CornerRow>, 3>;
+    HWY_ALIGN CornerRows corners;
 
     // Of a triangle in world space.
     HWY_INLINE void set_ray(std::size_t lane, const Ray& ray) {
@@ -104,15 +105,15 @@ struct TriangleColumns {
         }
     }
 
-    // The same with a triangle of the pairs' each.
+    // The same with a triangle each.
     HWY_INLINE TriangleColumns(const GroupRays& rays, std::size_t first,
-                               const TrianglePairs& pairs) {
-        set_corners(pairs);
+                               const TrianglePairs::CornerRows& rows) {
+        set_corners(rows);
         set_rays(rays, first);
     }
 
     HWY_INLINE explicit TriangleColumns(const TrianglePairs& pairs) {
-        set_corners(pairs);
+        set_corners(pairs.corners);
 #if HWY_TARGET == HWY_SCALAR
         for (std::size_t axis = 0; axis < 3; ++axis) {
             origin[axis] = hn::Load(Doubles(), &pairs.rays[0][axis]);
@@ -147,9 +148,9 @@ private:
         }
     }
 
-    HWY_INLINE void set_corners(const TrianglePairs& pairs) {
+    HWY_INLINE void set_corners(const TrianglePairs::CornerRows& rows) {
         for (std::size_t k = 0; k < 3; ++k)
-            set_corner(pairs.corners[k], corner[k]);
+            set_corner(rows[k], corner[k]);
     }
 
     HWY_INLINE static void set_corner(const TrianglePairs::Rows<TrianglePairs::CornerRow>& rows,
@@ -205,6 +206,26 @@ private:
     }
 };
 
+// What shear() works out, by the same operations.
+struct Shear {
+    ShearedAxes axes;
+    DoubleVector x, y, z;
+
+    HWY_INLINE explicit Shear(const DoubleVector (&direction)[3]) : axes(direction) {
+        z = hn::Div(hn::Set(Doubles(), 1.0), axes.z_of(direction));
+        x = hn::Mul(axes.x_of(direction), z);
+        y = hn::Mul(axes.y_of(direction), z);
+    }
+
+    // Across the ray, of a point seen from its origin that is `ahead` along it.
+    HWY_INLINE DoubleVector across_x(const DoubleVector (&point)[3], DoubleVector ahead) const {
+        return hn::Sub(axes.x_of(point), hn::Mul(x, ahead));
+    }
+    HWY_INLINE DoubleVector across_y(const DoubleVector (&point)[3], DoubleVector ahead) const {
+        return hn::Sub(axes.y_of(point), hn::Mul(y, ahead));
+    }
+};
+
 // As intersect_triangle sees it.
 inline bool has_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     return glm::cross(b - a, c - a) != glm::dvec3(0.0);
@@ -240,24 +261,20 @@ HWY_INLINE DoubleVector ordered_sum(DoubleVector a, DoubleVector b, DoubleVector
 // For triangles with an area only: those of none are not recognised here.
 HWY_INLINE void decide(TriangleColumns columns, TriangleAnswers& answers) {
     const Doubles d;
-    const ShearedAxes axes(columns.direction);
+    const Shear shear(columns.direction);
     for (auto& corner : columns.corner) {
         for (std::size_t axis = 0; axis < 3; ++axis)
             corner[axis] = hn::Sub(corner[axis], columns.origin[axis]);
     }
-    const auto along = axes.z_of(columns.direction);
-    const auto sz = hn::Div(hn::Set(d, 1.0), along);
-    const auto sx = hn::Mul(axes.x_of(columns.direction), sz);
-    const auto sy = hn::Mul(axes.y_of(columns.direction), sz);
-    const auto az = axes.z_of(columns.corner[0]);
-    const auto bz = axes.z_of(columns.corner[1]);
-    const auto cz = axes.z_of(columns.corner[2]);
-    const auto ax = hn::Sub(axes.x_of(columns.corner[0]), hn::Mul(sx, az));
-    const auto ay = hn::Sub(axes.y_of(columns.corner[0]), hn::Mul(sy, az));
-    const auto bx = hn::Sub(axes.x_of(columns.corner[1]), hn::Mul(sx, bz));
-    const auto by = hn::Sub(axes.y_of(columns.corner[1]), hn::Mul(sy, bz));
-    const auto cx = hn::Sub(axes.x_of(columns.corner[2]), hn::Mul(sx, cz));
-    const auto cy = hn::Sub(axes.y_of(columns.corner[2]), hn::Mul(sy, cz));
+    const auto az = shear.axes.z_of(columns.corner[0]);
+    const auto bz = shear.axes.z_of(columns.corner[1]);
+    const auto cz = shear.axes.z_of(columns.corner[2]);
+    const auto ax = shear.across_x(columns.corner[0], az);
+    const auto ay = shear.across_y(columns.corner[0], az);
+    const auto bx = shear.across_x(columns.corner[1], bz);
+    const auto by = shear.across_y(columns.corner[1], bz);
+    const auto cx = shear.across_x(columns.corner[2], cz);
+    const auto cy = shear.across_y(columns.corner[2], cz);
     const auto u = hn::Sub(hn::Mul(cx, by), hn::Mul(cy, bx));
     const auto v = hn::Sub(hn::Mul(ax, cy), hn::Mul(ay, cx));
     const auto w = hn::Sub(hn::Mul(bx, ay), hn::Mul(by, ax));
@@ -272,7 +289,7 @@ HWY_INLINE void decide(TriangleColumns columns, TriangleAnswers& answers) {
     const auto store = [&](const DoubleVector& from, TriangleAnswers::Numbers& to) HWY_ATTR {
         hn::Store(hn::DemoteTo(of_float, from), of_float, to.data());
     };
-    store(hn::Mul(scaled, hn::Mul(sz, inverse)), answers.t);
+    store(hn::Mul(scaled, hn::Mul(shear.z, inverse)), answers.t);
     store(hn::Mul(v, inverse), answers.u);
     store(hn::Mul(w, inverse), answers.v);
     std::uint8_t stored[8] = {};

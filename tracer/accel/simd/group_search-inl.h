@@ -162,7 +162,7 @@ HWY_INLINE bool crossed(Group& /*group*/, std::uint32_t /*object*/, std::uint32_
     return false;
 }
 
-// A hit that counts, if none before it does.
+// A hit within the ray's interval that counts, unless one before it is sought and there.
 template <typename Group>
 HWY_INLINE void offer_hit(Group& search, std::size_t ray, std::uint32_t object,
                           std::uint32_t primitive, float t) {

@@ -179,11 +179,9 @@ private:
     HWY_INLINE void offer_rectangle(std::uint32_t index, const RectanglesDecided& decided,
                                     std::size_t first, RayMask mask) {
         const Object& object = state_.scene->objects[index];
-        const auto seen = [&](bool front) HWY_ATTR {
-            return shows(object.sides, front) && shows(query_.sides, front);
-        };
+        const ShownSides sides = shown_sides(object, query_);
         const std::uint32_t shown =
-            (seen(true) ? decided.front : 0u) | (seen(false) ? ~decided.front : 0u);
+            (sides.front ? decided.front : 0u) | (sides.back ? ~decided.front : 0u);
         each_ray(mask & decided.ordinary & shown, [&](std::size_t lane) HWY_ATTR {
             const std::size_t ray = first + lane;
             const auto t = static_cast<float>(decided.enters_at[lane]);
@@ -256,8 +254,7 @@ private:
 
     // As its rays see an object, which go from end to start backwards.
     [[nodiscard]] ShownSides shown_to(const GroupSpace& space, const Object& object) const {
-        ShownSides shown{shows(object.sides, true) && shows(query_.sides, true),
-                         shows(object.sides, false) && shows(query_.sides, false)};
+        ShownSides shown = shown_sides(object, query_);
         if (space.course.backwards()) std::swap(shown.front, shown.back);
         return shown;
     }

@@ -102,9 +102,9 @@ private:
             const bool is_there = ((mask >> lane) & 1) != 0;
             const Candidate& candidate = is_there ? search_.candidate_of(first + lane) : one;
             for (std::size_t k = 0; k < 3; ++k)
-                pairs_.corners[k][lane] = candidate.corners[k];
+                corners_[k][lane] = candidate.corners[k];
         }
-        HWY_NAMESPACE::decide(TriangleColumns(world_, first, pairs_), answers);
+        HWY_NAMESPACE::decide(TriangleColumns(world_, first, corners_), answers);
     }
 
     HWY_INLINE bool set(std::size_t ray, TrianglePairs& pairs, std::size_t lane) {
@@ -147,7 +147,7 @@ private:
     const GroupRays& world_;
     std::span<const Ray> rays_;
     std::span<Hit> hits_;
-    TrianglePairs pairs_;  // corners only
+    HWY_ALIGN TrianglePairs::CornerRows corners_;  // of decide_in_place
     RayMask left_ = 0;
 };
 

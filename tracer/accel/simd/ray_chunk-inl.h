@@ -24,8 +24,8 @@ namespace raypick::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // Fewer rays than that are no group, for they are quicker apart (see RaysApart). Rays that go all
-// ways seldom have more in common than their octant. A group of spheres and cones is better as soon
-// as it isn't given up at once.
+// ways seldom have more in common than their octant. Of others, a group is better for spheres and
+// cones as soon as it isn't given up at once.
 inline int fewest_in_group(const AccelState& state, const std::array<RayMask, 8>& octants) {
     const auto ways =
         std::count_if(octants.begin(), octants.end(), [](RayMask group) { return group != 0; });

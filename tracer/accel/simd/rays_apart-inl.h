@@ -75,7 +75,7 @@ public:
 
     // Whether it has a tree that stands in the world's space.
     [[nodiscard]] static bool takes_apart(const Instance& instance) {
-        return instance.joined() || (instance.identity && instance.tree != nullptr);
+        return instance.identity && instance.tree != nullptr;
     }
 
 private:
@@ -90,6 +90,7 @@ private:
         const PrimitiveTree* tree;  // null in the top tree
         const Instance* instance;
         std::uint32_t object;
+        bool of_set;              // of spheres or cones; else of triangles
         const std::byte* leaves;  // where the tree keeps what they hold
         std::size_t leaf_size;
         WideRef at;
@@ -216,11 +217,11 @@ private:
         way.instance = &state_.instances[entry.object];
         way.tree = way.instance->tree;
         way.nodes = way.tree->bvh.nodes.data();
-        const bool of_set = !way.tree->bvh.indices.empty();
-        way.leaves = of_set ? std::as_bytes(std::span(way.tree->bvh.indices)).data()
-                            : std::as_bytes(std::span(way.tree->patches.blocks)).data();
+        way.of_set = !way.tree->bvh.indices.empty();
+        way.leaves = way.of_set ? std::as_bytes(std::span(way.tree->bvh.indices)).data()
+                                : std::as_bytes(std::span(way.tree->patches.blocks)).data();
         way.leaf_size =
-            of_set ? sizeof(way.tree->bvh.indices[0]) : sizeof(way.tree->patches.blocks[0]);
+            way.of_set ? sizeof(way.tree->bvh.indices[0]) : sizeof(way.tree->patches.blocks[0]);
         way.base = way.stack.count;
         way.stack.push(-std::numeric_limits<float>::infinity(), entry.part.bits);
     }
@@ -229,7 +230,7 @@ private:
     HWY_NOINLINE void enter_objects(Way& way) {
         const std::uint32_t index = state_.top.indices[way.at.index()];
         const TopEntry& first = state_.entries[index & ~WideBvh::kLast];
-        if ((index & WideBvh::kLast) != 0 && takes_apart(state_.instances[first.object])) {
+        if ((index & WideBvh::kLast) != 0 && goes_into(first)) {
             enter_tree(way, first);
             return;
         }
@@ -245,7 +246,14 @@ private:
         const std::uint32_t index = state_.top.indices[state_.top.root.index()];
         const TopEntry& entry = state_.entries[index & ~WideBvh::kLast];
         const bool is_only = (index & WideBvh::kLast) != 0;
-        return is_only && takes_apart(state_.instances[entry.object]) ? &entry : nullptr;
+        return is_only && goes_into(entry) ? &entry : nullptr;
+    }
+
+    [[nodiscard]] bool goes_into(const TopEntry& entry) const {
+        const Instance& instance = state_.instances[entry.object];
+        if (instance.joined()) return true;
+        return takes_apart(instance) &&
+               (state_.scene->objects[entry.object].mask & query_.mask) != 0;
     }
 
     RayInSpace& space_of(Way& way) const {
@@ -266,13 +274,12 @@ private:
 
     // Of a leaf. True: the ray has ended.
     HWY_INLINE bool search_primitives(Way& way) {
-        if (way.tree->bvh.indices.empty()) {
+        if (!way.of_set) {
             return each_patch(way.tree->patches, way.at, [&](const TrianglePatch& patch) HWY_ATTR {
                 return search_patch(way, patch);
             });
         }
         const Object& object = state_.scene->objects[way.object];
-        if ((object.mask & query_.mask) == 0) return false;
         if (const auto* spheres = std::get_if<SphereSetInstance>(&object.shape)) {
             return search_elements(way, object, state_.scene->sphere_sets[spheres->set],
                                    SphereFilter(rays_[way.ray]));
@@ -287,12 +294,12 @@ private:
     HWY_INLINE bool search_elements(Way& way, const Object& object, const Set& set,
                                     const Filter& filter) {
         const std::span<const std::uint32_t> leaf = indices_of(way.tree->bvh, way.at);
-        const bool front = shows(object.sides, true) && shows(query_.sides, true);
-        const bool back = shows(object.sides, false) && shows(query_.sides, false);
+        const ShownSides shown = shown_sides(object, query_);
+        if (!shown.any()) return false;
         for (std::size_t i = 0; i < leaf.size(); i += Filter::kAtOnce) {
             const auto some = leaf.subspan(i, std::min(Filter::kAtOnce, leaf.size() - i));
             RayVerdict verdict;
-            filter.judge(set, some, search_.limits.t_far[way.ray], front, back, verdict);
+            filter.judge(set, some, search_.limits.t_far[way.ray], shown, verdict);
             if (verdict.may != 0 && settle_elements<Set>(way, some, verdict)) return true;
         }
         return false;
@@ -301,23 +308,33 @@ private:
     template <typename Set>
     HWY_NOINLINE bool settle_elements(Way& way, std::span<const std::uint32_t> some,
                                       const RayVerdict& verdict) {
-        const bool holes = way.instance->holes;
+        const auto primitive = [&](std::size_t i) HWY_ATTR { return some[i] & ~WideBvh::kLast; };
+        const std::uint32_t may = not_crossed(search_, way.object, verdict.may, way.ray, primitive);
+        if (way.instance->holes) return look_through(way, may, primitive);
+        const std::uint32_t sure = verdict.sure & may;
+        if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
+            each_bit(sure, [&](std::size_t i) HWY_ATTR {
+                take_alone(search_, way.ray, verdict.from[i], verdict.to[i], way.object,
+                           primitive(i));
+            });
+        } else if (sure != 0) {
+            search_.block(RayMask{1} << way.ray);
+            return true;
+        }
+        each_bit(may & ~sure, [&](std::size_t i) HWY_ATTR {
+            open_.template add<Set>(
+                {static_cast<std::uint32_t>(way.ray), way.object, primitive(i)});
+        });
+        return false;
+    }
+
+    // Elements that may be cut out where the ray meets them. True: the ray has ended.
+    template <typename Primitive>
+    bool look_through(const Way& way, std::uint32_t may, const Primitive& primitive) {
+        auto one = one_of(search_, way.ray, way.object);
         bool ends = false;
-        each_bit(verdict.may, [&](std::size_t i) HWY_ATTR {
-            const std::uint32_t primitive = some[i] & ~WideBvh::kLast;
-            if (crossed(search_, way.object, primitive, RayMask{1} << way.ray)) return;
-            if (holes) {
-                auto one = one_of(search_, way.ray, way.object);
-                ends |= trace_primitive(state_, way.object, primitive, rays_[way.ray], query_, one);
-            } else if ((verdict.sure >> i & 1u) == 0) {
-                open_.template add<Set>(
-                    {static_cast<std::uint32_t>(way.ray), way.object, primitive});
-            } else if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
-                take_alone(search_, way.ray, verdict.from[i], verdict.to[i], way.object, primitive);
-            } else {
-                search_.block(RayMask{1} << way.ray);
-                ends = true;
-            }
+        each_bit(may, [&](std::size_t i) HWY_ATTR {
+            ends |= trace_primitive(state_, way.object, primitive(i), rays_[way.ray], query_, one);
         });
         return ends;
     }
@@ -333,8 +350,7 @@ private:
         if (index == kNobody) return false;
         const Object& object = state_.scene->objects[index];
         if ((object.mask & query_.mask) == 0) return false;
-        const ShownSides shown{shows(object.sides, true) && shows(query_.sides, true),
-                               shows(object.sides, false) && shows(query_.sides, false)};
+        const ShownSides shown = shown_sides(object, query_);
         if (!shown.any()) return false;
         if (!shown.front || !shown.back) judge(way, patch, shown, verdict);
         return settle(way, index, patch, verdict);

@@ -9,6 +9,7 @@
 
 #include "tracer/accel/simd/ray_verdict-inl.h"
 #include "tracer/accel/simd/sphere_bounds-inl.h"
+#include "tracer/accel/simd/triangle_bounds-inl.h"
 #include "tracer/bvh/wide_bvh.h"
 #include "tracer/scene/scene.h"
 
@@ -28,6 +29,7 @@ class SphereFilter {
 public:
     using Spheres = hn::CappedTag<float, 8>;
     static constexpr std::size_t kAtOnce = hn::MaxLanes(Spheres());
+    static_assert(kAtOnce <= RayVerdict::kMost);
 
     // `reach` is the largest coordinate of the ray's origin and of the spheres, `rounded` says that
     // the origin was rounded to float.
@@ -68,7 +70,7 @@ public:
 
     // Of such spheres, which of them it hits first on a side that counts. Unless it is idle.
     HWY_INLINE void judge(const SphereSet& set, std::span<const std::uint32_t> primitives,
-                          float limit, bool front, bool back, RayVerdict& verdict) const {
+                          float limit, const ShownSides& shown, RayVerdict& verdict) const {
         const Spheres d;
         const SphereLanes<Floats> at = lanes(set, primitives);
         const SphereSpan<Spheres> span(at);
@@ -76,7 +78,7 @@ public:
             ((1u << primitives.size()) - 1u) & ~bits(hn::Lt(span.depth, hn::Neg(at.error)));
         if (verdict.may == 0) return;
         const SphereCrossing<Spheres> crossing(span, at.error, hn::Set(d, t_min_),
-                                               hn::Set(d, limit), front, back);
+                                               hn::Set(d, limit), shown.front, shown.back);
         verdict.may &= ~bits(crossing.misses);
         if (verdict.may == 0) return;
         verdict.sure = verdict.may & bits(crossing.sure);

@@ -7,7 +7,9 @@
 #define RAYPICK_TRIANGLE_BOUNDS_INL_H
 #endif
 
+#include "tracer/accel/hit.h"
 #include "tracer/accel/simd/group_boxes-inl.h"
+#include "tracer/scene/scene.h"
 
 #include <hwy/highway.h>
 
@@ -21,6 +23,12 @@ struct ShownSides {
 
     [[nodiscard]] bool any() const { return front || back; }
 };
+
+// Those of the object that count for the query.
+inline ShownSides shown_sides(const Object& object, const RayQuery& query) {
+    return {shows(object.sides, true) && shows(query.sides, true),
+            shows(object.sides, false) && shows(query.sides, false)};
+}
 
 // Lanes are rays with one triangle, or triangles with one ray.
 template <class V>
