@@ -274,17 +274,6 @@ TEST_P(AccelBatch, ClipPlanesAndAccept) {
     expect_as_one_by_one(accel, rays, query);
 }
 
-// Cut out in a checker's pattern.
-MaterialId add_sieve(Scene& scene) {
-    Material sieve;
-    Texture checker;
-    checker.source = Checker{glm::vec4(1.0f), glm::vec4(0.0f)};
-    sieve.map(MapSlot::opacity).texture = add_texture(scene, checker);
-    sieve.map(MapSlot::opacity).u_row = {8, 0, 0};
-    sieve.map(MapSlot::opacity).v_row = {0, 8, 0};
-    return add_material(scene, sieve);
-}
-
 TEST_P(AccelBatch, HolesLetRaysThrough) {
     Scene scene;
     const MaterialId material = add_sieve(scene);
@@ -309,6 +298,7 @@ TEST_P(AccelBatch, HolesLetRaysThrough) {
 }
 
 // In groups, and each on its own way.
+// Sets that stand in two places have trees of their own; the others: see joined_sets_test.cpp.
 TEST_P(AccelBatch, HolesOfSetsLetRaysThrough) {
     Random random(31);
     std::vector<glm::vec4> spheres;
@@ -323,6 +313,8 @@ TEST_P(AccelBatch, HolesOfSetsLetRaysThrough) {
     const MaterialId material = add_sieve(scene);
     place(scene, SphereSetInstance{add_sphere_set(scene, make_sphere_set("", spheres))}, material);
     place(scene, ConeSetInstance{add_cone_set(scene, make_cone_set("", ends, true))}, material);
+    place(scene, SphereSetInstance{0}, material, translate({0.5, 0.0, 0.0}));
+    place(scene, ConeSetInstance{0}, material, translate({0.0, 0.5, 0.0}));
     const Accel accel = accel_of(scene);
     const std::vector<Ray> scattered = rays_through(accel.bounds(), 32, 2000);
     expect_as_one_by_one(accel, scattered);

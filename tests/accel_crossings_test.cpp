@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -214,6 +215,25 @@ TEST_P(AccelCrossings, OfJoinedMeshes) {
     for (std::uint64_t i = 0; i < 12; ++i)
         place_mesh(scene, soup_data(i, 60, 0.4), i % 4 == 3 ? kStone : kGlass);
     expect_all_as_single(scene, 4);
+}
+
+TEST_P(AccelCrossings, OfJoinedSets) {
+    Scene scene = scene_of_materials();
+    for (std::uint64_t i = 0; i < 5; ++i) {
+        const MaterialId material = std::array{kGlass, kStone, kGlass, kCurtain, kLace}[i];
+        place(scene,
+              SphereSetInstance{
+                  add_sphere_set(scene, make_sphere_set("balls", small_balls(i, 25, 0.15f)))},
+              material);
+        place(scene,
+              ConeSetInstance{add_cone_set(scene, make_cone_set("twigs", twigs(i, 20), true))},
+              material);
+    }
+    scene.objects[4].sides = Sides::front_only;
+    expect_all_as_single(scene, 6);
+    // Where rays of a group go one by one in the end.
+    place_mesh(scene, soup_data(3, 500, 0.2), kGlass);
+    expect_all_as_single(scene, 7);
 }
 
 TEST_P(AccelCrossings, OfOtherShapes) {

@@ -72,12 +72,12 @@ TEST(JoinedTree, StandsForTheTreesOfItsMeshes) {
     Scene scene = soups();
     place(scene, MeshInstance{2}, kNoMaterial, translate({0.5, 0.0, 0.0}));
     const SceneTrees trees = build_trees(scene, {}, nullptr);
-    ASSERT_THAT(trees.joined, NotNull());
-    EXPECT_EQ(trees.joined->members.size(), 11u);
+    ASSERT_THAT(trees.joined_meshes.tree, NotNull());
+    EXPECT_EQ(trees.joined_meshes.tree->members.size(), 11u);
     for (MeshId mesh = 0; mesh < 12; ++mesh)
         EXPECT_EQ(trees.meshes[mesh] != nullptr, mesh == 2) << mesh;
     const BuildOptions first{.quality = TreeQuality::first};
-    EXPECT_THAT(build_trees(scene, first, nullptr).joined, IsNull());
+    EXPECT_THAT(build_trees(scene, first, nullptr).joined_meshes.tree, IsNull());
 }
 
 TEST(JoinedTree, StaysWhenAnObjectIsMoved) {
@@ -85,15 +85,15 @@ TEST(JoinedTree, StaysWhenAnObjectIsMoved) {
     const SceneTrees before = build_trees(scene, {}, nullptr);
     scene.objects[4].world_from_object = translate({0.2, 0.0, 0.0});
     const SceneTrees after = build_trees(scene, {}, &before);
-    EXPECT_EQ(after.joined, before.joined);
-    EXPECT_THAT(after.joined_objects,
+    EXPECT_EQ(after.joined_meshes.tree, before.joined_meshes.tree);
+    EXPECT_THAT(after.joined_meshes.objects,
                 ElementsAre(0u, 1u, 2u, 3u, kNobody, 5u, 6u, 7u, 8u, 9u, 10u, 11u));
     EXPECT_THAT(after.meshes[4], NotNull());
     EXPECT_THAT(after.meshes[3], IsNull());
     scene.objects[4].world_from_object = {};
     const SceneTrees back = build_trees(scene, {}, &after);
-    EXPECT_EQ(back.joined, before.joined);
-    EXPECT_THAT(back.joined_objects, Not(Contains(kNobody)));
+    EXPECT_EQ(back.joined_meshes.tree, before.joined_meshes.tree);
+    EXPECT_THAT(back.joined_meshes.objects, Not(Contains(kNobody)));
     EXPECT_THAT(back.meshes[4], IsNull());
 }
 
@@ -103,12 +103,12 @@ TEST(JoinedTree, IsBuiltAnewWhenMostOfItIsGone) {
     for (std::size_t i = 6; i < 12; ++i)
         scene.objects[i].world_from_object = translate({0.2, 0.0, 0.0});
     const SceneTrees after = build_trees(scene, {}, &before);
-    ASSERT_THAT(after.joined, NotNull());
-    EXPECT_NE(after.joined, before.joined);
-    EXPECT_THAT(after.joined_objects, ElementsAre(0u, 1u, 2u, 3u, 4u, 5u));
+    ASSERT_THAT(after.joined_meshes.tree, NotNull());
+    EXPECT_NE(after.joined_meshes.tree, before.joined_meshes.tree);
+    EXPECT_THAT(after.joined_meshes.objects, ElementsAre(0u, 1u, 2u, 3u, 4u, 5u));
     for (std::size_t i = 2; i < 6; ++i)
         scene.objects[i].world_from_object = translate({0.2, 0.0, 0.0});
-    EXPECT_THAT(build_trees(scene, {}, &after).joined, IsNull());
+    EXPECT_THAT(build_trees(scene, {}, &after).joined_meshes.tree, IsNull());
 }
 
 TEST(JoinedTree, IsNotBuiltForWhatHasTrees) {
@@ -119,19 +119,19 @@ TEST(JoinedTree, IsNotBuiltForWhatHasTrees) {
     for (int i = 0; i < 4; ++i)
         place_mesh(scene, ball_data(1));
     const SceneTrees after = build_trees(scene, {}, &before);
-    EXPECT_THAT(after.joined, IsNull());
+    EXPECT_THAT(after.joined_meshes.tree, IsNull());
     EXPECT_EQ(after.meshes[3], before.meshes[3]);
-    EXPECT_THAT(build_trees(scene, {}, nullptr).joined, NotNull());
+    EXPECT_THAT(build_trees(scene, {}, nullptr).joined_meshes.tree, NotNull());
     const SceneTrees first = build_trees(scene, {.quality = TreeQuality::first}, nullptr);
-    EXPECT_THAT(build_trees(scene, {}, &first).joined, NotNull());
+    EXPECT_THAT(build_trees(scene, {}, &first).joined_meshes.tree, NotNull());
 }
 
 TEST(JoinedTree, IsTheSameForAnyNumberOfThreads) {
     const Scene scene = soups();
     const SceneTrees one = build_trees(scene, {.threads = 1}, nullptr);
     const SceneTrees three = build_trees(scene, {.threads = 3}, nullptr);
-    const auto& a = one.joined->tree;
-    const auto& b = three.joined->tree;
+    const auto& a = one.joined_meshes.tree->tree;
+    const auto& b = three.joined_meshes.tree->tree;
     ASSERT_EQ(a.patches.bytes(), b.patches.bytes());
     EXPECT_EQ(std::memcmp(a.patches.blocks.data(), b.patches.blocks.data(), a.patches.bytes()), 0);
 }

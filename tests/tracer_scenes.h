@@ -39,6 +39,17 @@ inline ObjectId place_mesh(Scene& scene, MeshData data, MaterialId material = kN
     return place(scene, MeshInstance{mesh}, material, world_from_object);
 }
 
+// Cut out in a checker's pattern.
+inline MaterialId add_sieve(Scene& scene) {
+    Material sieve;
+    Texture checker;
+    checker.source = Checker{glm::vec4(1.0f), glm::vec4(0.0f)};
+    sieve.map(MapSlot::opacity).texture = add_texture(scene, checker);
+    sieve.map(MapSlot::opacity).u_row = {8, 0, 0};
+    sieve.map(MapSlot::opacity).v_row = {0, 8, 0};
+    return add_material(scene, sieve);
+}
+
 inline Accel accel_of(Scene scene) {
     return Accel(std::make_shared<const Scene>(std::move(scene)));
 }

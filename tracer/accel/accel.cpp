@@ -67,8 +67,8 @@ void open_entry(const AccelState& state, std::size_t which, std::vector<PlacedEn
 // Opens objects that lie in each other's way, the largest boxes first, so that the top tree can
 // tell their parts apart (Benthin, Woop, Wald, Afra, "Improved Two-Level BVHs using Partial
 // Re-Braiding", HPG 2017). Objects that stand elsewhere than their shapes remain whole, as each of
-// their parts would have rays to be transformed again; so does the joined tree, which knows more of
-// its parts than the top tree can.
+// their parts would have rays to be transformed again; so do joined trees, which know more of their
+// parts than the top tree can.
 void open_entries(const AccelState& state, std::vector<PlacedEntry>& entries,
                   const BuildOptions& options) {
     // An object, on average.
@@ -98,35 +98,37 @@ void open_entries(const AccelState& state, std::vector<PlacedEntry>& entries,
     }
 }
 
-// The joined tree's entry, and what it needs to tell its objects apart.
-void place_joined(AccelState& state, std::vector<PlacedEntry>& entries) {
-    const SceneTrees& trees = state.trees;
-    if (trees.joined == nullptr) return;
+// A joined tree's entry, and what it needs to tell its objects apart.
+void place_joined(AccelState& state, const JoinedInScene& joined, std::vector<Member>& members,
+                  std::vector<PlacedEntry>& entries) {
+    if (joined.tree == nullptr) return;
     Bounds box;
-    for (std::size_t i = 0; i < trees.joined_objects.size(); ++i) {
-        const std::uint32_t object = trees.joined_objects[i];
+    for (std::size_t i = 0; i < joined.objects.size(); ++i) {
+        const std::uint32_t object = joined.objects[i];
         const bool there = object != kNobody;
-        state.members.push_back({object, there ? &state.instances[object] : nullptr});
-        if (there) box.extend(trees.joined->bounds[i]);
+        members.push_back({object, there ? &state.instances[object] : nullptr});
+        if (there) box.extend(joined.tree->bounds[i]);
     }
     if (box.empty()) return;
     state.bounds.extend(box);
-    const PrimitiveTree& tree = trees.joined->tree;
-    Instance joined;
-    joined.tree = &tree;
-    joined.members = state.members;
+    const PrimitiveTree& tree = joined.tree->tree;
+    Instance instance;
+    instance.tree = &tree;
+    instance.members = members;
     const auto index = static_cast<std::uint32_t>(state.instances.size());
-    state.instances.push_back(joined);
+    state.instances.push_back(instance);
     entries.push_back({{index, tree.bvh.root}, tree.bvh.bounds});
 }
 
 void place_objects(AccelState& state, const BuildOptions& options) {
     const Scene& scene = *state.scene;
     std::vector<PlacedEntry> entries;
-    state.instances.reserve(scene.objects.size() + 1);  // they are pointed to
+    state.instances.reserve(scene.objects.size() + 2);  // they are pointed to
     std::vector<bool> joined(scene.objects.size());
-    for (const std::uint32_t object : state.trees.joined_objects) {
-        if (object != kNobody) joined[object] = true;
+    for (const JoinedInScene* with : {&state.trees.joined_meshes, &state.trees.joined_sets}) {
+        for (const std::uint32_t object : with->objects) {
+            if (object != kNobody) joined[object] = true;
+        }
     }
     for (std::uint32_t index = 0; index < scene.objects.size(); ++index) {
         throw_if_stopped(options.stop);
@@ -142,7 +144,8 @@ void place_objects(AccelState& state, const BuildOptions& options) {
             state.unbounded.push_back(index);
         }
     }
-    place_joined(state, entries);
+    place_joined(state, state.trees.joined_meshes, state.mesh_members, entries);
+    place_joined(state, state.trees.joined_sets, state.set_members, entries);
     open_entries(state, entries, options);
     std::vector<Bounds> boxes;
     for (const PlacedEntry& placed : entries) {
@@ -265,7 +268,9 @@ AccelStats Accel::stats() const {
             if (tree != nullptr) add(*tree);
         }
     }
-    if (trees.joined != nullptr) add(trees.joined->tree);
+    for (const JoinedInScene* joined : {&trees.joined_meshes, &trees.joined_sets}) {
+        if (joined->tree != nullptr) add(joined->tree->tree);
+    }
     const PrimitiveCounts counts = count_primitives(*state_->scene);
     stats.triangles = counts.triangles;
     stats.spheres = counts.spheres;

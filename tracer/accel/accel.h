@@ -38,13 +38,14 @@ struct AccelStats {
 
 // Two levels: one tree a mesh or set, shared by its instances and by later Accels of an edited
 // scene, and one tree over the objects. For many rays meshes that stand where they are and nowhere
-// else share one. All queries are const and may run on many threads at once.
+// else share one, and so do sets, if they are in each other's way. All queries are const and may
+// run on many threads at once.
 // A ray with a NaN hits nothing; a t_min below 0 counts as 0.
 class Accel {
 public:
     // Builds for a snapshot of a scene. Meshes whose arrays also stand in `reuse` keep their trees
     // from there, unless these are of a lower quality than asked for: moving an object rebuilds
-    // the top level only, and the first time builds a tree for a mesh that shared one. Throws Error
+    // the top level only, and the first time builds a tree for what shared one. Throws Error
     // (check_scene) or Cancelled.
     explicit Accel(std::shared_ptr<const Scene> scene, const BuildOptions& options = {},
                    const Accel* reuse = nullptr);

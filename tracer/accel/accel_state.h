@@ -16,20 +16,20 @@ namespace raypick {
 
 struct Instance;
 
-// Whose triangles a joined tree holds (see trees.h).
+// Whose primitives a joined tree holds (see trees.h).
 struct Member {
     std::uint32_t object = kNobody;  // index; none: they are there no more
     const Instance* instance = nullptr;
 };
 
-// An object as rays meet it, or the objects that share the joined tree.
+// An object as rays meet it, or the objects that share a joined tree.
 struct Instance {
     Transform object_from_world;
     bool identity = true;
     bool holes = false;  // it may be cut out
     float slop = 0.0f;   // how far rounding may have moved a ray in object space, per unit
     const PrimitiveTree* tree = nullptr;
-    std::span<const Member> members{};  // of the joined tree; else empty
+    std::span<const Member> members{};  // of a joined tree; else empty
 
     [[nodiscard]] bool joined() const { return !members.empty(); }
 };
@@ -43,8 +43,9 @@ struct TopEntry {
 struct AccelState {
     std::shared_ptr<const Scene> scene;
     SceneTrees trees;
-    std::vector<Instance> instances;       // one an object, and one of the joined tree
-    std::vector<Member> members;           // of the joined tree
+    std::vector<Instance> instances;   // one an object, and one of each joined tree
+    std::vector<Member> mesh_members;  // of the joined trees
+    std::vector<Member> set_members;
     std::vector<TopEntry> entries;         // of the finite objects
     WideBvh top;                           // over the entries
     std::vector<std::uint32_t> unbounded;  // infinite planes

@@ -1,9 +1,9 @@
 #include "tracer/accel/trees.h"
 
+#include "tracer/accel/element_box.h"
 #include "tracer/accel/triangle_box.h"
 #include "tracer/bvh/bvh_fast.h"
 #include "tracer/error.h"
-#include "tracer/geometry/rounding.h"
 #include "tracer/parallel/parallel.h"
 
 #include <glm/common.hpp>
@@ -19,18 +19,6 @@ namespace raypick {
 
 namespace {
 
-Bounds sphere_box(const SphereSet& set, std::size_t index) {
-    const Sphere sphere = sphere_of(set, static_cast<std::uint32_t>(index));
-    return rounded_outwards(sphere.centre - sphere.radius, sphere.centre + sphere.radius);
-}
-
-// Of the two disks at the ends.
-Bounds cone_box(const ConeSet& set, std::size_t index) {
-    const Cone cone = cone_of(set, static_cast<std::uint32_t>(index));
-    const ObjectExtent extent = shape_extent(cone);
-    return rounded_outwards(extent.min, extent.max);
-}
-
 // The arrays that a tree is built over, and how many primitives and which boxes they make.
 struct TreeSource {
     TreeArrays arrays{};
@@ -38,6 +26,7 @@ struct TreeSource {
     BoxSource boxes;
     LeafCosts costs;
     std::shared_ptr<const JoinedMeshes> meshes = nullptr;  // whose triangles go into patches
+    std::shared_ptr<const JoinedSets> sets = nullptr;      // whose elements are taken along
 };
 
 template <typename BoxOf>
@@ -60,6 +49,20 @@ TreeSource source_of(std::vector<const Mesh*> several) {
     return {{}, meshes->triangles(), boxes, kWideSurfaceLeaves, meshes};
 }
 
+TreeSource source_of(std::vector<JoinableSet> several) {
+    const auto sets = std::make_shared<const JoinedSets>(std::move(several));
+    const auto boxes = [sets](std::size_t first, std::span<Bounds> wanted) {
+        std::size_t member = sets->member_of(first);
+        for (std::size_t i = first; i < first + wanted.size(); ++i) {
+            while (i >= sets->first(member + 1))
+                ++member;
+            wanted[i - first] = sets->set(member).element_bounds(i - sets->first(member));
+        }
+    };
+    const bool mixed = sets->first_cone() < sets->elements();
+    return {{}, sets->elements(), boxes, mixed ? kMixedLeaves : kWideLeaves, nullptr, sets};
+}
+
 TreeSource source_of(const Mesh& mesh) {
     TreeSource source = source_of(std::vector<const Mesh*>{&mesh});
     source.arrays = arrays_of(mesh);
@@ -67,17 +70,13 @@ TreeSource source_of(const Mesh& mesh) {
 }
 
 TreeSource source_of(const SphereSet& set) {
-    return {{set.spheres.data(), nullptr},
-            set.spheres.size(),
-            one_by_one([&set](std::size_t i) { return sphere_box(set, i); }),
-            kWideLeaves};
+    return {arrays_of(set), set.spheres.size(),
+            one_by_one([&set](std::size_t i) { return element_box(set, i); }), kWideLeaves};
 }
 
 TreeSource source_of(const ConeSet& set) {
-    return {{set.ends.data(), nullptr},
-            set.size(),
-            one_by_one([&set](std::size_t i) { return cone_box(set, i); }),
-            kWideLeaves};
+    return {arrays_of(set), set.size(),
+            one_by_one([&set](std::size_t i) { return element_box(set, i); }), kWideLeaves};
 }
 
 std::shared_ptr<const PrimitiveTree> find_tree(const TreeList& known, const TreeSource& source,
@@ -116,9 +115,11 @@ void build_quality_tree(PrimitiveTree& tree, const TreeSource& source, const Bvh
     if (source.meshes != nullptr) {
         tree.patches = take_triangles(tree.bvh, *source.meshes, how.threads, how.stop);
     }
+    if (source.sets != nullptr)
+        tree.elements = take_elements(tree.bvh, *source.sets, how.threads, how.stop);
 }
 
-// Of one mesh or set: first trees are not of joined meshes.
+// Of one mesh or set: first trees are not of joined ones.
 void build_first_tree(PrimitiveTree& tree, const TreeSource& source, const BvhOptions& how) {
     if (source.meshes == nullptr) {
         tree.bvh = build_bvh_fast(source.count, source.boxes, how);
@@ -196,12 +197,12 @@ void build_missing(TreeList& trees, std::span<const TreeSource> sources,
 // One tree for each mesh or set of `things`, but for those `without` one.
 template <typename Things>
 TreeList build_list(const Things& things, const BuildOptions& options, const TreeList* known,
-                    const std::vector<bool>& without = {}) {
+                    const std::vector<bool>& without) {
     std::vector<TreeSource> sources;
     std::vector<std::size_t> places;
     TreeList found;
     for (std::size_t i = 0; i < things.size(); ++i) {
-        if (!without.empty() && without[i]) continue;
+        if (without[i]) continue;
         places.push_back(i);
         sources.push_back(source_of(things[i]));
         found.push_back(known != nullptr ? find_tree(*known, sources.back(), options.quality)
@@ -214,67 +215,119 @@ TreeList build_list(const Things& things, const BuildOptions& options, const Tre
     return trees;
 }
 
-std::shared_ptr<const JoinedTree> join_meshes(const Scene& scene, const BuildOptions& options) {
+JoinedMember member_of(const JoinableMesh& joinable) {
+    return member_of(*joinable.mesh);
+}
+JoinedMember member_of(const JoinableSet& joinable) {
+    return joinable.spheres != nullptr ? member_of(*joinable.spheres) : member_of(*joinable.cones);
+}
+
+TreeSource source_of(const std::vector<JoinableMesh>& joinable) {
     std::vector<const Mesh*> meshes;
+    for (const JoinableMesh& one : joinable)
+        meshes.push_back(one.mesh);
+    return source_of(std::move(meshes));
+}
+
+template <typename Joinable>
+std::shared_ptr<const JoinedTree> join(const std::vector<Joinable>& joinable,
+                                       const BuildOptions& options) {
+    if (joinable.empty()) return nullptr;
     JoinedTree joined;
-    for (const JoinableMesh& joinable : joinable_meshes(scene, options)) {
-        meshes.push_back(joinable.mesh);
-        joined.members.push_back(arrays_of(*joinable.mesh));
-        joined.bounds.push_back(joinable.bounds);
+    for (const Joinable& one : joinable) {
+        joined.members.push_back(member_of(one));
+        joined.bounds.push_back(one.bounds);
     }
-    if (meshes.empty()) return nullptr;
-    joined.tree = build_tree(source_of(std::move(meshes)), options, options.threads);
+    joined.tree = build_tree(source_of(joinable), options, options.threads);
     return std::make_shared<const JoinedTree>(std::move(joined));
 }
 
-// Whether most triangles of a joined tree are still there.
+// Whether most primitives of a joined tree are still there.
 bool still_pays(const JoinedTree& joined, const Scene& scene,
                 const std::vector<std::uint32_t>& objects) {
     std::size_t there = 0;
     for (const std::uint32_t object : objects) {
-        if (object == kNobody) continue;
-        const auto& instance = std::get<MeshInstance>(scene.objects[object].shape);
-        there += scene.meshes[instance.mesh].triangles.size();
+        if (object != kNobody) there += primitive_count(scene, scene.objects[object]);
     }
     return there > joined.tree.count / 2;
 }
 
-// Whether some mesh has a tree for many rays.
-bool has_quality_tree(const SceneTrees& trees) {
-    return std::any_of(trees.meshes.begin(), trees.meshes.end(), [](const auto& tree) {
-        return tree != nullptr && tree->quality == TreeQuality::many_rays;
+// Whether some mesh or set has a tree for many rays.
+bool has_quality_tree(const TreeList& trees) {
+    return std::any_of(trees.begin(), trees.end(), [](const auto& tree) {
+        return tree != nullptr && tree->count != 0 && tree->quality == TreeQuality::many_rays;
     });
+}
+
+// What was joined before, as far as it still pays.
+JoinedInScene kept(const JoinedInScene& before, const Scene& scene) {
+    if (before.tree == nullptr) return {};
+    JoinedInScene now{before.tree, members_left(scene, before.members), {}};
+    now.objects = objects_of_members(scene, now.members);
+    return still_pays(*now.tree, scene, now.objects) ? now : JoinedInScene{};
+}
+
+// `joinable(scene, options)` says what is to be joined.
+template <typename Joinable>
+JoinedInScene joined_anew(const Scene& scene, const BuildOptions& options,
+                          const Joinable& joinable) {
+    JoinedInScene joined;
+    joined.tree = join(joinable(scene, options), options);
+    if (joined.tree == nullptr) return joined;
+    joined.members = joined.tree->members;
+    joined.objects = objects_of_members(scene, joined.members);
+    return joined;
 }
 
 // What already has trees of its own for many rays keeps them: edits are not to wait for others.
 void set_joined(SceneTrees& trees, const Scene& scene, const BuildOptions& options,
                 const SceneTrees* reuse) {
     if (options.quality != TreeQuality::many_rays) return;
-    if (reuse != nullptr && reuse->joined == nullptr && has_quality_tree(*reuse)) return;
-    if (reuse != nullptr && reuse->joined != nullptr) {
-        trees.joined_objects = objects_of_members(scene, reuse->joined->members);
-        if (still_pays(*reuse->joined, scene, trees.joined_objects)) {
-            trees.joined = reuse->joined;
-            return;
-        }
+    bool meshes_alone = false;
+    bool sets_alone = false;
+    if (reuse != nullptr) {
+        trees.joined_meshes = kept(reuse->joined_meshes, scene);
+        trees.joined_sets = kept(reuse->joined_sets, scene);
+        meshes_alone = reuse->joined_meshes.tree == nullptr && has_quality_tree(reuse->meshes);
+        sets_alone = reuse->joined_sets.tree == nullptr &&
+                     (has_quality_tree(reuse->sphere_sets) || has_quality_tree(reuse->cone_sets));
     }
-    trees.joined = join_meshes(scene, options);
-    trees.joined_objects.clear();
-    if (trees.joined == nullptr) return;
-    trees.joined_objects = objects_of_members(scene, trees.joined->members);
+    if (trees.joined_meshes.tree == nullptr && !meshes_alone) {
+        trees.joined_meshes = joined_anew(scene, options, joinable_meshes);
+    }
+    if (trees.joined_sets.tree == nullptr && !sets_alone) {
+        trees.joined_sets = joined_anew(scene, options, joinable_sets);
+    }
 }
 
-// By mesh: whether all its objects stand in the joined tree.
-std::vector<bool> meshes_joined(const Scene& scene, const SceneTrees& trees) {
-    std::vector<std::uint32_t> others = count_uses(scene);
-    std::vector<bool> joined(scene.meshes.size());
-    for (const std::uint32_t object : trees.joined_objects) {
-        if (object == kNobody) continue;
-        const MeshId mesh = std::get<MeshInstance>(scene.objects[object].shape).mesh;
-        joined[mesh] = --others[mesh] == 0;
+// By mesh or set: whether all its objects stand in a joined tree.
+struct StandJoined {
+    StandJoined(const Scene& scene, const SceneTrees& trees) {
+        Uses others(scene);
+        for (const JoinedInScene* joined : {&trees.joined_meshes, &trees.joined_sets}) {
+            for (const std::uint32_t object : joined->objects) {
+                if (object != kNobody) --*others.of(scene.objects[object].shape);
+            }
+        }
+        const Uses all(scene);
+        meshes = without_others(all.meshes, others.meshes);
+        sphere_sets = without_others(all.sphere_sets, others.sphere_sets);
+        cone_sets = without_others(all.cone_sets, others.cone_sets);
     }
-    return joined;
-}
+
+    std::vector<bool> meshes;
+    std::vector<bool> sphere_sets;
+    std::vector<bool> cone_sets;
+
+private:
+    static std::vector<bool> without_others(const std::vector<std::uint32_t>& all,
+                                            const std::vector<std::uint32_t>& others) {
+        std::vector<bool> joined(all.size());
+        for (std::size_t i = 0; i < all.size(); ++i)
+            joined[i] = all[i] > 0 && others[i] == 0;
+        return joined;
+    }
+};
 
 }  // namespace
 
@@ -284,10 +337,12 @@ SceneTrees build_trees(const Scene& scene, const BuildOptions& options, const Sc
     };
     SceneTrees trees;
     set_joined(trees, scene, options, reuse);
-    trees.meshes =
-        build_list(scene.meshes, options, known(&SceneTrees::meshes), meshes_joined(scene, trees));
-    trees.sphere_sets = build_list(scene.sphere_sets, options, known(&SceneTrees::sphere_sets));
-    trees.cone_sets = build_list(scene.cone_sets, options, known(&SceneTrees::cone_sets));
+    const StandJoined joined(scene, trees);
+    trees.meshes = build_list(scene.meshes, options, known(&SceneTrees::meshes), joined.meshes);
+    trees.sphere_sets =
+        build_list(scene.sphere_sets, options, known(&SceneTrees::sphere_sets), joined.sphere_sets);
+    trees.cone_sets =
+        build_list(scene.cone_sets, options, known(&SceneTrees::cone_sets), joined.cone_sets);
     return trees;
 }
 

@@ -53,6 +53,11 @@ inline constexpr LeafCosts kWideLeaves{
 inline constexpr LeafCosts kWideSurfaceLeaves{
     .node = 0.3f, .block = 1.0f, .block_size = 8, .min_leaf = 6, .max_leaf = 8};
 
+// For one whose leaves hold spheres and cones: those are tested apart, and of cones that fill
+// little of their boxes a box of its own rules out most.
+inline constexpr LeafCosts kMixedLeaves{
+    .node = 0.3f, .block = 1.0f, .block_size = 1, .min_leaf = 1, .max_leaf = 4};
+
 struct BvhOptions {
     LeafCosts costs;
     int threads = 0;       // 0: all cores. The tree is the same for any number

@@ -42,6 +42,32 @@ struct ConeLanes {
     V rounding;  // of the origin: the largest coordinate it was rounded from, or 0
 };
 
+// Cones by their ends.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE ConeLanes<V> cone_lanes(D d, V base_x, V base_y, V base_z, V radius, V apex_x, V apex_y,
+                                   V apex_z, V at_apex, V rounding) {
+    const V x = hn::Sub(apex_x, base_x);
+    const V y = hn::Sub(apex_y, base_y);
+    const V z = hn::Sub(apex_z, base_z);
+    const V squared = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+    // Squares of less underflow: then comparisons with NaN rule nothing out.
+    const auto fits = hn::Gt(squared, hn::Set(d, 0x1p-80f));
+    const V nothing = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
+    const V length = hn::IfThenElse(fits, hn::Sqrt(squared), nothing);
+    const V by_length = hn::Div(hn::Set(d, 1.0f), length);
+    return {base_x,
+            base_y,
+            base_z,
+            hn::Mul(x, by_length),
+            hn::Mul(y, by_length),
+            hn::Mul(z, by_length),
+            length,
+            radius,
+            hn::Mul(hn::Sub(at_apex, radius), by_length),
+            hn::Max(radius, at_apex),
+            rounding};
+}
+
 template <class V>
 struct RayLanes {
     V origin_x, origin_y, origin_z;

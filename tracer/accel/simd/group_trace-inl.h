@@ -6,6 +6,7 @@
 #define RAYPICK_GROUP_TRACE_INL_H
 #endif
 
+#include "tracer/accel/joined_sets.h"
 #include "tracer/accel/simd/decide_rectangles-inl.h"
 #include "tracer/accel/simd/decide_triangles-inl.h"
 #include "tracer/accel/simd/group_back-inl.h"
@@ -133,19 +134,54 @@ private:
         enter_placed(entry, world, mask, reach);
     }
 
-    // The joined tree, or a part of it.
+    // A joined tree, or a part of it.
     void enter_joined(const TopEntry& entry, const GroupSpace& world, RayMask mask) {
         const Instance& joined = state_.instances[entry.object];
         if (!(joined.tree->reach < kFarthestReach)) {
             each_on_its_own(entry, mask);
             return;
         }
-        search_mesh(entry, world, mask, [&](const TrianglePatch& patch) HWY_ATTR {
-            const std::uint32_t index = joined.members[patch.member].object;
-            if (index == kNobody) return Searched{};
-            const Object& object = state_.scene->objects[index];
-            if ((object.mask & query_.mask) == 0) return Searched{};
-            return Searched{index, shown_to(world, object)};
+        if (joined.tree->bvh.indices.empty()) {
+            search_mesh(entry, world, mask, [&](const TrianglePatch& patch) HWY_ATTR {
+                return member(world, joined, patch);
+            });
+        } else if (world.course.backwards()) {
+            enter_joined(entry, GroupSpace(*world.course.forward, mask, 0.0f, state_.reach), mask);
+        } else {
+            search_joined_sets(entry, world, mask);
+        }
+    }
+
+    // Whose a joined tree's patch or element is, and which sides of it are searched.
+    template <typename Part>
+    [[nodiscard]] HWY_INLINE Searched member(const GroupSpace& space, const Instance& joined,
+                                             const Part& part) const {
+        const std::uint32_t index = joined.members[part.member].object;
+        if (index == kNobody) return {};
+        const Object& object = state_.scene->objects[index];
+        if ((object.mask & query_.mask) == 0) return {};
+        return {index, shown_to(space, object)};
+    }
+
+    void search_joined_sets(const TopEntry& entry, const GroupSpace& space, RayMask mask) {
+        const Instance& joined = state_.instances[entry.object];
+        const PrimitiveTree& tree = *joined.tree;
+        search_tree(entry, space, mask, [&](const WideRef& at, RayMask met) HWY_ATTR {
+            const JoinedLeaf leaf = joined_leaf(tree.bvh, tree.elements, at);
+            for (std::size_t i = 0; i < leaf.spheres + leaf.cones; ++i) {
+                const JoinedElement& element = leaf.elements[i];
+                const Searched here = member(space, joined, element);
+                if (!here.shown.any()) continue;
+                const glm::vec4* row = leaf.rows + tree.elements.stride * i;
+                if (i < leaf.spheres) {
+                    judge_all(here.object, space, here.shown, group_sphere(space, *row),
+                              element.primitive, met);
+                } else {
+                    judge_all(here.object, space, here.shown,
+                              group_cone(row[0], row[1], tree.elements.capped), element.primitive,
+                              met);
+                }
+            }
         });
     }
 

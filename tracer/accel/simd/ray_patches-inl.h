@@ -34,23 +34,16 @@ inline bool better_ray_by_ray(const TrianglePatch& patch, RayMask mask) {
 
 static_assert(TrianglePatch::kMostTriangles <= RayVerdict::kMost);
 
-// Of the primitives that a ray may hit, those that don't just let it go on; primitive(i) says which
-// they are.
-template <typename Group, typename Primitive>
-HWY_INLINE std::uint32_t not_crossed(Group& search, std::uint32_t object, std::uint32_t may,
-                                     std::size_t ray, const Primitive& primitive) {
-    std::uint32_t others = may;
-    each_bit(may, [&](std::size_t i) HWY_ATTR {
-        if (crossed(search, object, primitive(i), RayMask{1} << ray)) others &= ~(1u << i);
-    });
-    return others;
-}
+// Of the triangles that a ray may hit, those that don't just let it go on.
 template <typename Group>
 HWY_INLINE std::uint32_t not_crossed(Group& search, std::uint32_t object,
                                      const TrianglePatch& patch, std::uint32_t may,
                                      std::size_t ray) {
-    return not_crossed(search, object, may, ray,
-                       [&](std::size_t i) HWY_ATTR { return patch.primitives()[i]; });
+    std::uint32_t others = may;
+    each_bit(may, [&](std::size_t i) HWY_ATTR {
+        if (crossed(search, object, patch.primitives()[i], RayMask{1} << ray)) others &= ~(1u << i);
+    });
+    return others;
 }
 
 HWY_INLINE TriangleFloats dots(const GroupTriangles::Vectors& v, std::size_t first,

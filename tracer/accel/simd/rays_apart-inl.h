@@ -7,8 +7,11 @@
 #define RAYPICK_RAYS_APART_INL_H
 #endif
 
+#include "tracer/accel/joined_sets.h"
+#include "tracer/accel/leaf_elements.h"
 #include "tracer/accel/simd/group_search-inl.h"
 #include "tracer/accel/simd/open_elements-inl.h"
+#include "tracer/accel/simd/ray_cones-inl.h"
 #include "tracer/accel/simd/ray_patches-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
 
@@ -96,6 +99,8 @@ private:
         WideRef at;
         std::size_t base;  // what waits below is of the top tree
         bool is_last;      // the tree is all that there is
+        bool ended;        // nothing more is wanted of the ray
+        float far_before;  // t_far as it was before the leaf
         float t_min;
         float steepest;  // the direction's largest component
         std::optional<SlabRay> slabs;
@@ -132,9 +137,21 @@ private:
             }
             const Ways some = at_leaves;
             at_leaves.count = 0;
+            Ways with_cones;
             for (std::size_t i = 0; i < some.count; ++i) {
                 Way& way = *some.way[i];
-                search_leaf(way);
+                if (search_leaf(way)) {
+                    with_cones.way[with_cones.count++] = &way;
+                    continue;
+                }
+                leave_leaf(way);
+                if (goes_on(way, pending, start)) put(way, at_nodes, at_leaves);
+            }
+            if (with_cones.count == 0) continue;
+            judge_cones();
+            for (std::size_t i = 0; i < with_cones.count; ++i) {
+                Way& way = *with_cones.way[i];
+                leave_leaf(way);
                 if (goes_on(way, pending, start)) put(way, at_nodes, at_leaves);
             }
         }
@@ -154,6 +171,7 @@ private:
         way.space.reset();
         way.stack.count = 0;
         way.is_last = false;
+        way.ended = false;
         start(way);
     }
 
@@ -218,12 +236,21 @@ private:
         way.tree = way.instance->tree;
         way.nodes = way.tree->bvh.nodes.data();
         way.of_set = !way.tree->bvh.indices.empty();
-        way.leaves = way.of_set ? std::as_bytes(std::span(way.tree->bvh.indices)).data()
-                                : std::as_bytes(std::span(way.tree->patches.blocks)).data();
-        way.leaf_size =
-            way.of_set ? sizeof(way.tree->bvh.indices[0]) : sizeof(way.tree->patches.blocks[0]);
+        if (!way.of_set) {
+            set_leaves(way, way.tree->patches.blocks, 1);
+        } else if (way.instance->joined()) {
+            set_leaves(way, way.tree->elements.rows, way.tree->elements.stride);
+        } else {
+            set_leaves(way, way.tree->bvh.indices, 1);
+        }
         way.base = way.stack.count;
         way.stack.push(-std::numeric_limits<float>::infinity(), entry.part.bits);
+    }
+
+    template <typename Array>
+    static HWY_INLINE void set_leaves(Way& way, const Array& array, std::size_t stride) {
+        way.leaves = reinterpret_cast<const std::byte*>(array.data());
+        way.leaf_size = stride * sizeof(array[0]);
     }
 
     // At a leaf of the top tree.
@@ -261,82 +288,117 @@ private:
         return *way.space;
     }
 
-    HWY_INLINE void search_leaf(Way& way) {
-        const float before = search_.limits.t_far[way.ray];
-        if (search_primitives(way)) {
+    // True: some of its cones wait to be judged.
+    HWY_INLINE bool search_leaf(Way& way) {
+        way.far_before = search_.limits.t_far[way.ray];
+        if (!way.of_set) {
+            way.ended = each_patch(way.tree->patches, way.at,
+                                   [&](const TrianglePatch& patch)
+                                       HWY_ATTR { return search_patch(way, patch); });
+            return false;
+        }
+        if (way.instance->joined()) return search_joined(way);
+        const Shape& shape = state_.scene->objects[way.object].shape;
+        const std::span<const std::uint32_t> leaf = indices_of(way.tree->bvh, way.at);
+        if (const auto* spheres = std::get_if<SphereSetInstance>(&shape)) {
+            search_spheres(way, state_.scene->sphere_sets[spheres->set], leaf);
+            return false;
+        }
+        const ConeSet& cones = state_.scene->cone_sets[std::get<ConeSetInstance>(shape).set];
+        for (const std::uint32_t index : leaf) {
+            const std::uint32_t primitive = index & ~WideBvh::kLast;
+            add_cone(way, way.object, primitive, &cones.ends[kConeRows * primitive], cones.capped);
+        }
+        return true;
+    }
+
+    HWY_INLINE void leave_leaf(Way& way) {
+        if (way.ended) {
             way.stack.count = way.base = 0;
             way.is_last = true;
             return;
         }
         const float far = search_.limits.t_far[way.ray];
-        if (far < before) way.stack.drop_beyond(far, way.base);
-    }
-
-    // Of a leaf. True: the ray has ended.
-    HWY_INLINE bool search_primitives(Way& way) {
-        if (!way.of_set) {
-            return each_patch(way.tree->patches, way.at, [&](const TrianglePatch& patch) HWY_ATTR {
-                return search_patch(way, patch);
-            });
-        }
-        const Object& object = state_.scene->objects[way.object];
-        if (const auto* spheres = std::get_if<SphereSetInstance>(&object.shape)) {
-            return search_elements(way, object, state_.scene->sphere_sets[spheres->set],
-                                   SphereFilter(rays_[way.ray]));
-        }
-        const auto& cones = std::get<ConeSetInstance>(object.shape);
-        return search_elements(way, object, state_.scene->cone_sets[cones.set],
-                               ConeFilter(rays_[way.ray], way.steepest));
+        if (far < way.far_before) way.stack.drop_beyond(far, way.base);
     }
 
     // Of a leaf of a set.
-    template <typename Set, typename Filter>
-    HWY_INLINE bool search_elements(Way& way, const Object& object, const Set& set,
-                                    const Filter& filter) {
-        const std::span<const std::uint32_t> leaf = indices_of(way.tree->bvh, way.at);
-        const ShownSides shown = shown_sides(object, query_);
-        if (!shown.any()) return false;
-        for (std::size_t i = 0; i < leaf.size(); i += Filter::kAtOnce) {
-            const auto some = leaf.subspan(i, std::min(Filter::kAtOnce, leaf.size() - i));
+    HWY_INLINE void search_spheres(Way& way, const SphereSet& set,
+                                   std::span<const std::uint32_t> leaf) {
+        const SphereFilter filter(rays_[way.ray]);
+        for (std::size_t i = 0; i < leaf.size(); i += SphereFilter::kAtOnce) {
+            const auto some = leaf.subspan(i, std::min(SphereFilter::kAtOnce, leaf.size() - i));
             RayVerdict verdict;
-            filter.judge(set, some, search_.limits.t_far[way.ray], shown, verdict);
-            if (verdict.may != 0 && settle_elements<Set>(way, some, verdict)) return true;
-        }
-        return false;
-    }
-
-    template <typename Set>
-    HWY_NOINLINE bool settle_elements(Way& way, std::span<const std::uint32_t> some,
-                                      const RayVerdict& verdict) {
-        const auto primitive = [&](std::size_t i) HWY_ATTR { return some[i] & ~WideBvh::kLast; };
-        const std::uint32_t may = not_crossed(search_, way.object, verdict.may, way.ray, primitive);
-        if (way.instance->holes) return look_through(way, may, primitive);
-        const std::uint32_t sure = verdict.sure & may;
-        if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
-            each_bit(sure, [&](std::size_t i) HWY_ATTR {
-                take_alone(search_, way.ray, verdict.from[i], verdict.to[i], way.object,
-                           primitive(i));
+            filter.judge(elements_of(set, some), search_.limits.t_far[way.ray], {}, verdict);
+            each_bit(verdict.may, [&](std::size_t k) HWY_ATTR {
+                settle_element<SphereSet>(way, way.object, some[k] & ~WideBvh::kLast, verdict, k);
             });
-        } else if (sure != 0) {
-            search_.block(RayMask{1} << way.ray);
-            return true;
         }
-        each_bit(may & ~sure, [&](std::size_t i) HWY_ATTR {
-            open_.template add<Set>(
-                {static_cast<std::uint32_t>(way.ray), way.object, primitive(i)});
-        });
-        return false;
     }
 
-    // Elements that may be cut out where the ray meets them. True: the ray has ended.
-    template <typename Primitive>
-    bool look_through(const Way& way, std::uint32_t may, const Primitive& primitive) {
-        auto one = one_of(search_, way.ray, way.object);
-        bool ends = false;
-        each_bit(may, [&](std::size_t i) HWY_ATTR {
-            ends |= trace_primitive(state_, way.object, primitive(i), rays_[way.ray], query_, one);
+    // Of a leaf of joined sets. True: some of its cones wait to be judged.
+    HWY_INLINE bool search_joined(Way& way) {
+        const JoinedElements& joined = way.tree->elements;
+        const JoinedLeaf leaf = joined_leaf(way.tree->bvh, joined, way.at);
+        const auto object = [&](std::size_t i) HWY_ATTR {
+            return way.instance->members[leaf.elements[i].member].object;
+        };
+        const SphereFilter filter(rays_[way.ray]);
+        for (std::size_t i = 0; i < leaf.spheres; i += SphereFilter::kAtOnce) {
+            const LeafElements some{leaf.rows + joined.stride * i, joined.stride,
+                                    std::min(SphereFilter::kAtOnce, leaf.spheres - i)};
+            RayVerdict verdict;
+            filter.judge(some, search_.limits.t_far[way.ray], {}, verdict);
+            each_bit(verdict.may, [&](std::size_t k) HWY_ATTR {
+                settle_element<SphereSet>(way, object(i + k), leaf.elements[i + k].primitive,
+                                          verdict, k);
+            });
+        }
+        for (std::size_t i = leaf.spheres; i < leaf.spheres + leaf.cones; ++i) {
+            add_cone(way, object(i), leaf.elements[i].primitive, leaf.rows + joined.stride * i,
+                     joined.capped);
+        }
+        return leaf.cones != 0;
+    }
+
+    HWY_INLINE void add_cone(Way& way, std::uint32_t object, std::uint32_t primitive,
+                             const glm::vec4* ends, bool capped) {
+        if (cones_.full() || !cones_.takes(capped)) judge_cones();
+        waiting_[cones_.count()] = {&way, object, primitive};
+        cones_.add(rays_[way.ray], way.steepest, search_.limits.t_far[way.ray], ends, capped);
+    }
+
+    HWY_NOINLINE void judge_cones() {
+        RayVerdict verdict;
+        cones_.judge(verdict);
+        cones_.clear();
+        each_bit(verdict.may, [&](std::size_t i) HWY_ATTR {
+            const WaitingCone& cone = waiting_[i];
+            settle_element<ConeSet>(*cone.way, cone.object, cone.primitive, verdict, i);
         });
-        return ends;
+    }
+
+    // What number i of a verdict, which is of both sides, says of an object's element.
+    template <typename Set>
+    HWY_NOINLINE void settle_element(Way& way, std::uint32_t index, std::uint32_t primitive,
+                                     const RayVerdict& verdict, std::size_t i) {
+        if (index == kNobody) return;
+        const Object& object = state_.scene->objects[index];
+        if ((object.mask & query_.mask) == 0) return;
+        const ShownSides shown = shown_sides(object, query_);
+        if (!shown.any()) return;
+        if (crossed(search_, index, primitive, RayMask{1} << way.ray)) return;
+        if (state_.instances[index].holes) {
+            auto one = one_of(search_, way.ray, index);
+            way.ended |= trace_primitive(state_, index, primitive, rays_[way.ray], query_, one);
+        } else if (!shown.front || !shown.back || (verdict.sure >> i & 1u) == 0) {
+            open_.template add<Set>({static_cast<std::uint32_t>(way.ray), index, primitive});
+        } else if constexpr (std::is_same_v<Group, ClosestOfGroup>) {
+            take_alone(search_, way.ray, verdict.from[i], verdict.to[i], index, primitive);
+        } else {
+            search_.block(RayMask{1} << way.ray);
+            way.ended = true;
+        }
     }
 
     // True: the ray has ended.
@@ -398,6 +460,13 @@ private:
     const RayQuery& query_;
     Group& search_;
     OpenOfGroup<Group> open_;
+    RayCones cones_;  // to be judged
+    struct WaitingCone {
+        Way* way;
+        std::uint32_t object;  // index
+        std::uint32_t primitive;
+    };
+    std::array<WaitingCone, RayCones::kAtOnce> waiting_;  // whose they are
 };
 
 }  // namespace raypick::HWY_NAMESPACE

@@ -6,6 +6,8 @@
 #define RAYPICK_SINGLE_RAY_INL_H
 #endif
 
+#include "tracer/accel/joined_sets.h"
+#include "tracer/accel/leaf_elements.h"
 #include "tracer/accel/passage.h"
 #include "tracer/accel/simd/cone_filter-inl.h"
 #include "tracer/accel/simd/sphere_filter-inl.h"
@@ -206,7 +208,7 @@ private:
             constexpr std::size_t kMost = Filter::kAtOnce;
             for (std::size_t i = 0; i < primitives.size(); i += kMost) {
                 const auto some = primitives.subspan(i, std::min(kMost, primitives.size() - i));
-                std::uint32_t left = filter.may_hit(set, some, search.limit());
+                std::uint32_t left = filter.may_hit(elements_of(set, some), search.limit());
                 for (; left != 0; left &= left - 1) {
                     const std::uint32_t index =
                         some[static_cast<std::size_t>(std::countr_zero(left))];
@@ -229,7 +231,58 @@ bool trace_simple(const AccelState& state, std::uint32_t index, const Ray& ray,
     return std::visit(ShapeTrace<Search>{passage, nullptr, {}, search}, object.shape);
 }
 
-// A leaf of the joined tree. `world` is the ray.
+// The elements of a leaf of joined sets that the filter lets through.
+template <typename Filter, typename Search>
+bool trace_joined_elements(const AccelState& state, const Instance& joined,
+                           const JoinedElement* elements, const LeafElements& all,
+                           const Filter& filter, const Ray& ray, const RayQuery& query,
+                           Search& search) {
+    for (std::size_t i = 0; i < all.size(); i += Filter::kAtOnce) {
+        const LeafElements some{all.row(i), all.stride, std::min(Filter::kAtOnce, all.size() - i)};
+        std::uint32_t left = filter.may_hit(some, search.limit());
+        for (; left != 0; left &= left - 1) {
+            const JoinedElement& element =
+                elements[i + static_cast<std::size_t>(std::countr_zero(left))];
+            const Member& member = joined.members[element.member];
+            if (member.object == kNobody) continue;
+            const Object& object = state.scene->objects[member.object];
+            if ((object.mask & query.mask) == 0) continue;
+            const Passage passage{*state.scene, object, *member.instance,
+                                  ray,          query,  object_ray(*member.instance, ray)};
+            set_object(search, member.object);
+            if (ShapeTrace<Search>{passage, nullptr, {}, search}.primitive(element.primitive)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+// The joined tree of sets, or a part of it. `world` is the ray.
+template <typename Search>
+bool trace_joined_sets(const AccelState& state, const TopEntry& entry, const Ray& ray,
+                       RayInSpace& world, const RayQuery& query, Search& search) {
+    const Instance& joined = state.instances[entry.object];
+    const PrimitiveTree& tree = *joined.tree;
+    const std::size_t stride = tree.elements.stride;
+    const ObjectRay local = object_ray(joined, ray);
+    const float reach = world.reach(tree);
+    const SphereFilter sphere_filter(local, ray.t_min, reach, false);
+    const ConeFilter cone_filter(local, ray.t_min, reach, false);
+    return walk(
+        tree.bvh, entry.part, world.slabs(), ray.t_min, [&]() HWY_ATTR { return search.limit(); },
+        [&](const WideRef& at) HWY_ATTR {
+            const JoinedLeaf leaf = joined_leaf(tree.bvh, tree.elements, at);
+            const LeafElements spheres{leaf.rows, stride, leaf.spheres};
+            const LeafElements cones{spheres.row(leaf.spheres), stride, leaf.cones};
+            return trace_joined_elements(state, joined, leaf.elements, spheres, sphere_filter, ray,
+                                         query, search) ||
+                   trace_joined_elements(state, joined, leaf.elements + leaf.spheres, cones,
+                                         cone_filter, ray, query, search);
+        });
+}
+
+// A leaf of the joined tree of meshes. `world` is the ray.
 template <typename Search>
 bool trace_joined_leaf(const AccelState& state, const Instance& joined, const WideRef& leaf,
                        const Ray& ray, RayInSpace& world, const RayQuery& query, Search& search) {
@@ -253,6 +306,9 @@ bool trace_entry(const AccelState& state, const TopEntry& entry, const Ray& ray,
                  const RayQuery& query, Search& search) {
     const Instance& instance = state.instances[entry.object];
     if (instance.tree == nullptr) return trace_simple(state, entry.object, ray, query, search);
+    if (instance.joined() && !instance.tree->bvh.indices.empty()) {
+        return trace_joined_sets(state, entry, ray, world, query, search);
+    }
     if (instance.joined()) {
         return walk(
             instance.tree->bvh, entry.part, world.slabs(), ray.t_min,

@@ -7,11 +7,10 @@
 #define RAYPICK_SPHERE_FILTER_INL_H
 #endif
 
+#include "tracer/accel/leaf_elements.h"
 #include "tracer/accel/simd/ray_verdict-inl.h"
 #include "tracer/accel/simd/sphere_bounds-inl.h"
 #include "tracer/accel/simd/triangle_bounds-inl.h"
-#include "tracer/bvh/wide_bvh.h"
-#include "tracer/scene/scene.h"
 
 #include <glm/common.hpp>
 
@@ -19,7 +18,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
@@ -49,13 +47,13 @@ public:
         : origin_(ray.origin), direction_(ray.direction), t_min_(ray.t_min) {}
 
     // Of as many spheres as one instruction takes at most those that the ray may hit at a t of at
-    // most `limit`, as a mask.
-    HWY_INLINE std::uint32_t may_hit(const SphereSet& set,
-                                     std::span<const std::uint32_t> primitives, float limit) const {
-        const std::uint32_t all = (1u << primitives.size()) - 1u;
+    // most `limit`, as a mask. `Elements` is SetElements or LeafElements.
+    template <typename Elements>
+    HWY_INLINE std::uint32_t may_hit(const Elements& spheres, float limit) const {
+        const std::uint32_t all = (1u << spheres.size()) - 1u;
         if (idle_) return all;
         const Spheres d;
-        const SphereLanes<Floats> at = lanes(set, primitives);
+        const SphereLanes<Floats> at = lanes(spheres);
         const SphereSpan<Spheres> span(at);
         const auto grow = hn::Set(d, 1.0f + 0x1p-21f);
         const auto shrink = hn::Set(d, 1.0f - 0x1p-21f);
@@ -69,13 +67,13 @@ public:
     }
 
     // Of such spheres, which of them it hits first on a side that counts. Unless it is idle.
-    HWY_INLINE void judge(const SphereSet& set, std::span<const std::uint32_t> primitives,
-                          float limit, const ShownSides& shown, RayVerdict& verdict) const {
+    template <typename Elements>
+    HWY_INLINE void judge(const Elements& spheres, float limit, const ShownSides& shown,
+                          RayVerdict& verdict) const {
         const Spheres d;
-        const SphereLanes<Floats> at = lanes(set, primitives);
+        const SphereLanes<Floats> at = lanes(spheres);
         const SphereSpan<Spheres> span(at);
-        verdict.may =
-            ((1u << primitives.size()) - 1u) & ~bits(hn::Lt(span.depth, hn::Neg(at.error)));
+        verdict.may = ((1u << spheres.size()) - 1u) & ~bits(hn::Lt(span.depth, hn::Neg(at.error)));
         if (verdict.may == 0) return;
         const SphereCrossing<Spheres> crossing(span, at.error, hn::Set(d, t_min_),
                                                hn::Set(d, limit), shown.front, shown.back);
@@ -95,14 +93,12 @@ private:
         return stored[0];
     }
 
-    HWY_INLINE SphereLanes<Floats> lanes(const SphereSet& set,
-                                         std::span<const std::uint32_t> primitives) const {
+    template <typename Elements>
+    HWY_INLINE SphereLanes<Floats> lanes(const Elements& spheres) const {
         const Spheres d;
         HWY_ALIGN std::array<glm::vec4, kAtOnce> rows;
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-            const std::uint32_t primitive = primitives[std::min(i, primitives.size() - 1)];
-            rows[i] = set.spheres[primitive & ~WideBvh::kLast];
-        }
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            rows[i] = *spheres.row(std::min(i, spheres.size() - 1));
         Floats x;
         Floats y;
         Floats z;
