@@ -73,18 +73,6 @@ ConeSet make_cone_set(std::string name, std::vector<glm::vec4> ends, bool capped
     return set;
 }
 
-Sphere sphere_of(const SphereSet& set, std::uint32_t primitive) {
-    const glm::dvec4 sphere(set.spheres[primitive]);
-    return {glm::dvec3(sphere), sphere.w};
-}
-
-Cone cone_of(const ConeSet& set, std::uint32_t primitive) {
-    const std::size_t first = std::size_t{2} * primitive;
-    const glm::dvec4 base(set.ends[first]);
-    const glm::dvec4 apex(set.ends[first + 1]);
-    return {glm::dvec3(base), glm::dvec3(apex), base.w, apex.w, set.capped};
-}
-
 void check_set(const SphereSet& set) {
     const std::string what = fmt::format("sphere set \"{}\"", set.name);
     check_count(what, "spheres", set.spheres.size());

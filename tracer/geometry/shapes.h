@@ -146,8 +146,16 @@ ConeSet make_cone_set(std::string name, std::vector<glm::vec4> ends, bool capped
                       std::vector<Part> parts = {});
 
 // One element of a set.
-Sphere sphere_of(const SphereSet& set, std::uint32_t primitive);
-Cone cone_of(const ConeSet& set, std::uint32_t primitive);
+inline Sphere sphere_of(const SphereSet& set, std::uint32_t primitive) {
+    const glm::dvec4 sphere(set.spheres[primitive]);
+    return {glm::dvec3(sphere), sphere.w};
+}
+inline Cone cone_of(const ConeSet& set, std::uint32_t primitive) {
+    const std::size_t first = std::size_t{2} * primitive;
+    const glm::dvec4 base(set.ends[first]);
+    const glm::dvec4 apex(set.ends[first + 1]);
+    return {glm::dvec3(base), glm::dvec3(apex), base.w, apex.w, set.capped};
+}
 
 // Throw Error that names the first sphere or cone that is not finite, has no size, or that parts
 // don't cover, as check_mesh.
