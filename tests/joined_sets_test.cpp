@@ -218,6 +218,37 @@ TEST_P(JoinedSetRays, MeetOpenConesOnly) {
     expect_all_ways(scene, 5);
 }
 
+// Rays come in through the caps, or through open ends, and out of the side.
+TEST_P(JoinedSetRays, TellOpenConesFromCappedOnes) {
+    Scene scene;
+    for (const bool capped : {true, false, true, false, true}) {
+        std::vector<glm::vec4> ends = points(scene.objects.size(), 80, 0.12f);
+        for (std::size_t i = 1; i < ends.size(); i += 2)
+            ends[i] = ends[i - 1] + glm::vec4(0.0f, 0.1f, 0.03f, 0.02f);
+        place(scene, ConeSetInstance{add_cone_set(scene, make_cone_set("", ends, capped))});
+    }
+    expect_all_ways(scene, 6);
+    const Accel accel = accel_of(scene);
+    const Accel apart(std::make_shared<const Scene>(scene), {.quality = TreeQuality::first});
+    const std::vector<Ray> rays = rays_through(accel.bounds(), 7, 3000);
+    expect_as_one_by_one(accel, rays);
+    for (const Ray& ray : rays)
+        ASSERT_EQ(accel.intersect(ray), apart.intersect(ray)) << to_text(ray);
+}
+
+// Where there are more triangles, shadow rays go from the light to what it shines on.
+TEST_P(JoinedSetRays, AreFollowedBackwards) {
+    Scene scene = molecule();
+    place_mesh(scene, soup_data(5, 1500, 0.05));
+    for (const Sides sides : {Sides::both, Sides::front_only, Sides::back_only}) {
+        for (Object& object : scene.objects)
+            object.sides = sides;
+        const Accel accel = accel_of(scene);
+        expect_shadows_as_one_by_one(
+            accel, coherent_rays(accel.bounds(), {24, 32}, Projection::perspective, 4));
+    }
+}
+
 TEST_P(JoinedSetRays, SeeOneSideIfAskedTo) {
     const Accel accel = accel_of(molecule());
     const std::vector<Ray> rays =
