@@ -11,10 +11,10 @@
 #include "tracer/scene/scene.h"
 
 #include <array>
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <tuple>
 #include <vector>
 
 namespace raypick {
@@ -41,7 +41,9 @@ struct JoinedMember {
     TreeArrays arrays{};
     std::size_t primitives = 0;
 
-    friend auto operator<=>(const JoinedMember&, const JoinedMember&) = default;
+    friend bool operator<(const JoinedMember& a, const JoinedMember& b) {
+        return std::tie(a.kind, a.arrays, a.primitives) < std::tie(b.kind, b.arrays, b.primitives);
+    }
 };
 JoinedMember member_of(const Mesh& mesh);
 JoinedMember member_of(const SphereSet& set);

@@ -224,6 +224,7 @@ JoinedMember member_of(const JoinableSet& joinable) {
 
 TreeSource source_of(const std::vector<JoinableMesh>& joinable) {
     std::vector<const Mesh*> meshes;
+    meshes.reserve(joinable.size());
     for (const JoinableMesh& one : joinable)
         meshes.push_back(one.mesh);
     return source_of(std::move(meshes));
