@@ -115,8 +115,9 @@ void build_quality_tree(PrimitiveTree& tree, const TreeSource& source, const Bvh
     if (source.meshes != nullptr) {
         tree.patches = take_triangles(tree.bvh, *source.meshes, how.threads, how.stop);
     }
-    if (source.sets != nullptr)
+    if (source.sets != nullptr) {
         tree.elements = take_elements(tree.bvh, *source.sets, how.threads, how.stop);
+    }
 }
 
 // Of one mesh or set: first trees are not of joined ones.
