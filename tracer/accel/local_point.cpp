@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-double largest(const glm::dvec3& v) {
+double largest_coordinate(const glm::dvec3& v) {
     return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
 }
 
@@ -131,8 +131,8 @@ LocalPoint sphere_point(const Sphere& sphere, const Hit& hit, const ObjectRay& r
                         bool derivatives) {
     const double t = sphere_t(sphere, ray, static_cast<double>(hit.t));
     const glm::dvec3 n = glm::normalize(at(ray, t) - sphere.centre);
-    LocalPoint point =
-        flat_point(sphere.centre + sphere.radius * n, n, largest(sphere.centre) + sphere.radius);
+    LocalPoint point = flat_point(sphere.centre + sphere.radius * n, n,
+                                  largest_coordinate(sphere.centre) + sphere.radius);
     if (!derivatives) return point;
     const double from_axis = std::hypot(n.x, n.z);
     if (!(from_axis > 1e-9)) return point;  // the poles have no longitude
@@ -151,7 +151,7 @@ LocalPoint disk_point(const Disk& disk, const AxisFrame& frame, const ObjectRay&
     const double hole = disk.inner_radius > 0.0 ? disk.inner_radius + margin : 0.0;
     const double radius = std::clamp(around.distance, hole, disk.radius - margin);
     LocalPoint point = flat_point(disk.centre + radius * around.away, disk.normal,
-                                  largest(disk.centre) + disk.radius);
+                                  largest_coordinate(disk.centre) + disk.radius);
     if (!(around.distance > 0.0)) return point;
     point.dpdu = kTurn * radius * around.along;
     point.dpdv = disk.radius * around.away;
@@ -163,8 +163,9 @@ LocalPoint cone_point(const Cone& cone, const ShapeHit& hit, const ObjectRay& ra
     const double length = glm::length(axis);
     // Caps measure their angles in the side's frame, whichever way they look.
     const AxisFrame frame = axis_frame(axis);
-    const double magnitude = std::max(largest(cone.base), largest(cone.apex)) +
-                             std::max(cone.base_radius, cone.apex_radius);
+    const double magnitude =
+        std::max(largest_coordinate(cone.base), largest_coordinate(cone.apex)) +
+        std::max(cone.base_radius, cone.apex_radius);
     if (hit.primitive != 0) {
         const bool is_base = hit.primitive == 1;
         const Disk cap{is_base ? cone.base : cone.apex, is_base ? -frame.y : frame.y,
@@ -201,8 +202,9 @@ LocalPoint torus_point(const Torus& torus, const ShapeHit& hit, const ObjectRay&
     const Around around = around_axis(frame, from_centre);
     const glm::dvec3 ring = torus.major_radius * around.away;
     const glm::dvec3 out = glm::normalize(from_centre - ring);
-    LocalPoint point = flat_point(torus.centre + ring + torus.minor_radius * out, out,
-                                  largest(torus.centre) + torus.major_radius + torus.minor_radius);
+    LocalPoint point =
+        flat_point(torus.centre + ring + torus.minor_radius * out, out,
+                   largest_coordinate(torus.centre) + torus.major_radius + torus.minor_radius);
     const double from_axis = torus.major_radius + torus.minor_radius * glm::dot(out, around.away);
     point.dpdu = kTurn * from_axis * around.along;
     point.dpdv = kTurn * torus.minor_radius *
@@ -246,8 +248,9 @@ LocalPoint triangle_point(const ObjectRay& ray, const Hit& hit, const glm::dvec3
         weights = off_the_edges(weights, {rim.share(edge_b, c - b), rim.share(b - c, edge_c),
                                           rim.share(edge_c, edge_b)});
     }
-    LocalPoint point = flat_point(weights.x * a + weights.y * b + weights.z * c, normal,
-                                  std::max(std::max(largest(a), largest(b)), largest(c)));
+    LocalPoint point = flat_point(
+        weights.x * a + weights.y * b + weights.z * c, normal,
+        std::max(std::max(largest_coordinate(a), largest_coordinate(b)), largest_coordinate(c)));
     point.dpdu = edge_b;
     point.dpdv = edge_c;
     return point;
@@ -282,7 +285,7 @@ struct LocalPointOf {
         const double above = glm::dot(n, ray.origin) + plane.d;
         const glm::dvec3 p = at(ray, finite_or(-above / glm::dot(n, ray.direction), hit.t));
         const double height = glm::dot(n, p) + plane.d;
-        LocalPoint point = flat_point(p - n * (height / glm::dot(n, n)), n, largest(p));
+        LocalPoint point = flat_point(p - n * (height / glm::dot(n, n)), n, largest_coordinate(p));
         // u and v are the coordinates other than the one that the normal is longest along.
         const glm::dvec3 length = glm::abs(n);
         int across = 2;
@@ -309,7 +312,7 @@ struct LocalPointOf {
         const glm::dvec3 p = at(ray, finite_or(way, hit.t));
         point.geometric_normal[axis] = upper ? 1.0 : -1.0;
         point.shading_normal = point.geometric_normal;
-        point.magnitude = std::max(largest(box.min), largest(box.max));
+        point.magnitude = std::max(largest_coordinate(box.min), largest_coordinate(box.max));
         const int u = (axis + 1) % 3;
         const int v = (axis + 2) % 3;
         point.dpdu[u] = box.max[u] - box.min[u];
@@ -335,7 +338,8 @@ struct LocalPointOf {
         meet_within(rectangle, ray, exact);
         const glm::dvec3& u = rectangle.edge_u;
         const glm::dvec3& v = rectangle.edge_v;
-        const double magnitude = largest(rectangle.corner) + largest(u) + largest(v);
+        const double magnitude =
+            largest_coordinate(rectangle.corner) + largest_coordinate(u) + largest_coordinate(v);
         const double margin_u = rim.share(u, v);
         const double margin_v = rim.share(v, u);
         LocalPoint point =

@@ -11,7 +11,7 @@ namespace {
 constexpr int kMaxCutDepth = 6;
 static_assert(kMostTreeletLeaves <= 1u << (kMostTreeletDepth - kMaxCutDepth));
 
-struct Range {
+struct LeafRange {
     std::uint32_t begin = 0;
     std::uint32_t end = 0;
     std::uint32_t node = 0;
@@ -59,12 +59,12 @@ Cut best_cut(std::span<const TreeletLeaf> leaves) {
 void append_treelet(std::vector<BvhNode>& nodes, std::span<const TreeletLeaf> leaves) {
     assert(!leaves.empty() && leaves.size() <= kMostTreeletLeaves);
     const std::size_t root = nodes.size();
-    std::array<Range, kMostTreeletLeaves> todo;
+    std::array<LeafRange, kMostTreeletLeaves> todo;
     std::size_t waiting = 0;
     todo[waiting++] = {0, static_cast<std::uint32_t>(leaves.size()), 0, 0};
     nodes.emplace_back();
     while (waiting > 0) {
-        const Range range = todo[--waiting];
+        const LeafRange range = todo[--waiting];
         BvhNode& node = nodes[root + range.node];
         if (range.end - range.begin == 1) {
             const TreeletLeaf& leaf = leaves[range.begin];

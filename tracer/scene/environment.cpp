@@ -3,6 +3,7 @@
 #include "tracer/error.h"
 #include "tracer/scene/limits.h"
 #include "tracer/scene/scene.h"
+#include "tracer/scene/texture.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -16,8 +17,6 @@
 namespace raypick {
 
 namespace {
-
-constexpr int kMaxTaps = 16;
 
 glm::vec3 gradient(const GradientSky& sky, const glm::vec3& direction) {
     const float height = glm::dot(direction, glm::vec3(glm::normalize(sky.up)));

@@ -12,7 +12,6 @@ namespace raypick {
 namespace {
 
 constexpr float kLargestCoordinate = 1e9f;  // beyond it, and for NaN, coordinates mean nothing
-constexpr int kMaxTaps = 16;
 
 // The samples along the longer axis of a footprint that together cover it.
 struct Taps {

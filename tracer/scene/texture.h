@@ -77,6 +77,9 @@ struct TextureMap {
     friend bool operator==(const TextureMap&, const TextureMap&) = default;
 };
 
+// The most samples that are averaged along the longer axis of what a pixel covers.
+inline constexpr int kMaxTaps = 16;
+
 // What a pixel covers of a surface, in the surface's uv: the axes of an ellipse around the point,
 // full widths. 0: a point.
 struct Footprint {
@@ -85,8 +88,8 @@ struct Footprint {
 };
 
 // The texture's linear RGBA around `uv` (the surface's), averaged over the footprint, with the
-// map's base and gain applied to all four. Never aliases where the footprint is right: up to 16
-// trilinear samples along the major axis; squares of a checker are integrated.
+// map's base and gain applied to all four. Never aliases where the footprint is right: up to
+// kMaxTaps trilinear samples along the major axis; squares of a checker are integrated.
 glm::vec4 sample(const Texture& texture, const TextureMap& map, const glm::vec2& uv,
                  const Footprint& footprint = {});
 
