@@ -1,5 +1,6 @@
 // The real program, headless, on small files that the tests write.
 #include "command_fixture.h"
+#include "sanitized.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -90,14 +90,6 @@ std::vector<std::string> TemporaryFolder::names() const {
     return names;
 }
 
-bool is_sanitized() {
-#if defined(RAYPICK_SANITIZED)
-    return true;
-#else
-    return false;
-#endif
-}
-
 std::string read_file(const std::filesystem::path& file) {
     std::ostringstream text;
     text << std::ifstream(file, std::ios::binary).rdbuf();

@@ -41,9 +41,6 @@ private:
     std::filesystem::path path_;
 };
 
-// Whether the program was built for a sanitizer, which holds memory of its own.
-bool is_sanitized();
-
 std::string read_file(const std::filesystem::path& file);
 
 // Where the program's input comes from and its output goes to.

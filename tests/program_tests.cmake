@@ -7,9 +7,6 @@ if(TARGET raypick)
     target_link_libraries(program_under_test PRIVATE raypick_flags)
     target_compile_definitions(program_under_test PRIVATE
         RAYPICK_PROGRAM="$<TARGET_FILE:raypick>")
-    if(RAYPICK_SANITIZE)
-        target_compile_definitions(program_under_test PRIVATE RAYPICK_SANITIZED)
-    endif()
     add_dependencies(program_under_test raypick)
 
     raypick_test(command_test LABELS cpu LIBS program_under_test)
