@@ -17,7 +17,7 @@ vec3 turned(vec3 v, int fastest) {
 }
 
 // Barycentric weights of the point where the ray meets the triangle's plane, moved onto the
-// triangle; NaN if the triangle is seen edge-on.
+// triangle; 0, and so is t, if the triangle is seen edge-on.
 vec3 weights(vec3 a, vec3 b, vec3 c, vec2 slope) {
     vec2 pa = a.xy - slope * a.z;
     vec2 pb = b.xy - slope * b.z;
@@ -26,7 +26,8 @@ vec3 weights(vec3 a, vec3 b, vec3 c, vec2 slope) {
                   pb.x * pa.y - pb.y * pa.x);
     if (w.x + w.y + w.z < 0.0) w = -w;
     w = max(w, 0.0);
-    return w / (w.x + w.y + w.z);
+    float sum = w.x + w.y + w.z;
+    return sum > 0.0 ? w / sum : vec3(0.0);
 }
 
 #ifdef TEXTURED

@@ -18,9 +18,14 @@ const uint kNoObject = 0xffffffffu;
 
 out vec4 screen;
 
+// By its bits: drivers may take a comparison with NaN as they like, and NVIDIA's does.
+bool is_nan(float x) {
+    return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u;
+}
+
 // srgb_from_linear of tracer/render/image.h. NaN becomes 0.
 float srgb_from_linear(float linear) {
-    if (!(linear > 0.0)) return 0.0;
+    if (linear <= 0.0 || is_nan(linear)) return 0.0;
     if (linear <= 0.0031308) return 12.92 * linear;
     return min(1.055 * pow(linear, 1.0 / 2.4) - 0.055, 1.0);
 }
