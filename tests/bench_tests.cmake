@@ -28,9 +28,7 @@ if(TARGET raypick_io AND NOT RAYPICK_SANITIZE)
         bench/screen.cpp
         bench/tachyon_scene.cpp
         pov_scene.cpp)
-    if(RAYPICK_SHARE_HEADERS)
-        set_target_properties(raypick_bench PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
-    endif()
+    raypick_join_sources(raypick_bench 8)
     find_package(nlohmann_json REQUIRED)
     target_link_libraries(raypick_bench PRIVATE raypick_tracer raypick_io raypick_picking
                           raypick_flags fmt::fmt nlohmann_json::nlohmann_json)
