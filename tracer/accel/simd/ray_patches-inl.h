@@ -100,14 +100,13 @@ HWY_INLINE SomeVerdict judge_functions(const EdgeFunctions<TriangleFloats>& f,
                                        RayVerdict& verdict) {
     const Triangles d;
     const EdgeBounded<Triangles> edges(f, errors.edge);
-    std::uint32_t may = ~triangle_bits(edges.misses(shown)) & ((1u << kTrianglesAtOnce) - 1u);
-    if (may == 0) return {};
     const PlaneBounded<Triangles> plane(f.slope, errors.slope,
                                         Height<TriangleFloats>{f.height, errors.height});
     const auto least = hn::Set(d, t_min);
     const auto most = hn::Set(d, t_far);
-    may &= ~triangle_bits(plane.misses(least, most));
-    if (may == 0) return {};
+    const std::uint32_t may =
+        ~triangle_bits(hn::Or(edges.misses(shown), plane.misses(least, most))) &
+        ((1u << kTrianglesAtOnce) - 1u);
     const auto from = plane.from();
     const auto to = plane.to();
     const auto sure = hn::And(edges.surely_within(), plane.surely_within(from, to, least, most));

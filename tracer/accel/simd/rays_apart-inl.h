@@ -86,73 +86,97 @@ private:
     // So many make a loop worth its while.
     static constexpr std::size_t kLeaves = 8;
 
+    // What a tree's places stand for, in memory.
+    struct Stored {
+        const std::byte* first;
+        std::size_t size;  // of each
+    };
+
     // A ray on its way.
     struct Way {
         std::size_t ray;
-        const WideNode* nodes;      // of the tree that it is in
-        const PrimitiveTree* tree;  // null in the top tree
+        WideRef at;
+        const WideNode* nodes;         // of the tree that it is in
+        std::array<Stored, 2> stored;  // these, and what its leaves hold
+        bool in_top;                   // it is in the top tree. Else:
+        const PrimitiveTree* tree;
         const Instance* instance;
         std::uint32_t object;
-        bool of_set;              // of spheres or cones; else of triangles
-        const std::byte* leaves;  // where the tree keeps what they hold
-        std::size_t leaf_size;
-        WideRef at;
-        std::size_t base;  // what waits below is of the top tree
+        bool of_set;       // of spheres or cones; else of triangles
+        std::size_t base;  // what waits below is of the top tree; in that it is 0
         bool is_last;      // the tree is all that there is
         bool ended;        // nothing more is wanted of the ray
         float far_before;  // t_far as it was before the leaf
         float t_min;
-        float steepest;  // the direction's largest component
+        float steepest;              // the direction's largest component
+        const TrianglePatch* patch;  // of the leaf, and what the bounds say of it
+        RayVerdict verdict;
         std::optional<SlabRay> slabs;
         std::optional<RayInSpace> space;  // once it is needed
         WaitingBoxes stack;
     };
-    // All that waits is of the top tree, however much it is.
-    static constexpr std::size_t kInTop = std::numeric_limits<std::size_t>::max();
 
     // Those at one kind of place.
     struct Ways {
         std::array<Way*, kWays + 1> way;
         std::size_t count = 0;
+
+        HWY_INLINE Ways take() {
+            const Ways all = *this;
+            count = 0;
+            return all;
+        }
+    };
+
+    // By where they are.
+    struct Places {
+        Ways nodes;
+        Ways leaves;   // of an object's tree
+        Ways objects;  // leaves of the top tree
+
+        // Without a branch, as it can't be foretold which it is.
+        HWY_INLINE void put(Way& way) {
+            const std::size_t is_leaf = way.at.bits >> 31u;
+            const std::size_t in_top = way.in_top;
+            nodes.way[nodes.count] = leaves.way[leaves.count] = objects.way[objects.count] = &way;
+            nodes.count += 1 - is_leaf;
+            leaves.count += is_leaf & (1 - in_top);
+            objects.count += is_leaf & in_top;
+            fetch(way);
+        }
+        [[nodiscard]] bool empty() const { return nodes.count + leaves.count + objects.count == 0; }
+        [[nodiscard]] bool few_leaves() const { return leaves.count + objects.count < kLeaves; }
     };
 
     template <typename Start>
     void follow(RayMask pending, const Start& start) {
         Way ways[kWays];  // NOLINT: large, and set when they begin
-        Ways at_nodes;
-        Ways at_leaves;
+        Places places;
+        const auto go_on = [&](Way& way) HWY_ATTR {
+            if (goes_on(way, pending, start)) places.put(way);
+        };
         for (std::size_t i = 0; i < kWays && pending != 0; ++i) {
             begin(ways[i], pending, start);
-            if (goes_on(ways[i], pending, start)) put(ways[i], at_nodes, at_leaves);
+            go_on(ways[i]);
         }
-        while (at_nodes.count + at_leaves.count > 0) {
-            while (at_nodes.count > 0 && at_leaves.count < kLeaves) {
-                const std::size_t count = std::exchange(at_nodes.count, 0);
+        while (!places.empty()) {
+            while (places.nodes.count > 0 && places.few_leaves()) {
+                const std::size_t count = std::exchange(places.nodes.count, 0);
                 for (std::size_t i = 0; i < count; ++i) {
-                    Way& way = *at_nodes.way[i];
+                    Way& way = *places.nodes.way[i];
                     way.slabs->push_met(way.nodes[way.at.index()], way.t_min,
                                         search_.limits.t_far[way.ray], way.stack);
-                    if (goes_on(way, pending, start)) put(way, at_nodes, at_leaves);
+                    go_on(way);
                 }
             }
-            const Ways some = at_leaves;
-            at_leaves.count = 0;
-            Ways with_cones;
-            for (std::size_t i = 0; i < some.count; ++i) {
-                Way& way = *some.way[i];
-                if (search_leaf(way)) {
-                    with_cones.way[with_cones.count++] = &way;
-                    continue;
-                }
-                leave_leaf(way);
-                if (goes_on(way, pending, start)) put(way, at_nodes, at_leaves);
-            }
-            if (with_cones.count == 0) continue;
-            judge_cones();
-            for (std::size_t i = 0; i < with_cones.count; ++i) {
-                Way& way = *with_cones.way[i];
-                leave_leaf(way);
-                if (goes_on(way, pending, start)) put(way, at_nodes, at_leaves);
+            const Ways objects = places.objects.take();
+            const Ways leaves = places.leaves.take();
+            search_leaves(leaves);
+            for (std::size_t i = 0; i < leaves.count; ++i)
+                go_on(*leaves.way[i]);
+            for (std::size_t i = 0; i < objects.count; ++i) {
+                enter_objects(*objects.way[i]);
+                go_on(*objects.way[i]);
             }
         }
         open_.decide_last();
@@ -178,79 +202,62 @@ private:
     // Takes what waits on top of the stack, if need be of another ray; false if there is none.
     template <typename Start>
     HWY_INLINE bool goes_on(Way& way, RayMask& pending, const Start& start) {
-        if (way.stack.count > way.base) {  // not in the top tree: see kInTop
-            way.at = {way.stack.ref[--way.stack.count]};
-            return true;
+        if (way.stack.count <= way.base && !goes_on_elsewhere(way, pending, start)) return false;
+        way.at = {way.stack.ref[--way.stack.count]};
+        return true;
+    }
+
+    // The way has no more of this tree.
+    template <typename Start>
+    HWY_NOINLINE bool goes_on_elsewhere(Way& way, RayMask& pending, const Start& start) {
+        if (!way.in_top && !way.is_last) {
+            go_to_top(way);
+            way.stack.drop_beyond(search_.limits.t_far[way.ray], 0);
         }
-        while (!goes_on_from_tree(way)) {
+        while (way.stack.count <= way.base) {
             if (pending == 0) return false;
             begin(way, pending, start);
         }
         return true;
     }
 
-    // A place beyond it, if it has no more of this tree.
-    HWY_NOINLINE bool goes_on_from_tree(Way& way) {
-        for (;;) {
-            if (way.tree != nullptr && way.stack.count > way.base) {
-                way.at = {way.stack.ref[--way.stack.count]};
-                return true;
-            }
-            if (way.is_last) return false;
-            go_to_top(way);
-            if (way.stack.count == 0) return false;
-            --way.stack.count;
-            if (!(way.stack.enter[way.stack.count] <= search_.limits.t_far[way.ray])) continue;
-            way.at = {way.stack.ref[way.stack.count]};
-            if (!way.at.is_leaf()) return true;
-            enter_objects(way);
-        }
-    }
-
-    // Without a branch, as it can't be foretold which it is.
-    static HWY_INLINE void put(Way& way, Ways& at_nodes, Ways& at_leaves) {
-        const std::size_t is_leaf = way.at.bits >> 31u;
-        at_nodes.way[at_nodes.count] = at_leaves.way[at_leaves.count] = &way;
-        at_leaves.count += is_leaf;
-        at_nodes.count += 1 - is_leaf;
-        fetch(way);
-    }
-
     static HWY_INLINE void fetch(const Way& way) {
-        const void* place = &way.nodes[way.at.index()];
-        if (way.at.is_leaf()) place = way.leaves + way.at.index() * way.leaf_size;
-        const auto* line = static_cast<const std::byte*>(place);
+        const Stored& stored = way.stored[way.at.bits >> 31u];
+        const std::byte* line = stored.first + way.at.index() * stored.size;
         for (std::size_t i = 0; i < 4; ++i)
             __builtin_prefetch(line + 64 * i);
     }
 
     void go_to_top(Way& way) const {
-        way.tree = nullptr;
-        way.base = kInTop;
+        way.in_top = true;
+        way.base = 0;
         way.nodes = state_.top.nodes.data();
+        way.stored[0] = stored_in(state_.top.nodes, 1);
+        way.stored[1] = stored_in(state_.top.indices, 1);
     }
 
     HWY_INLINE void enter_tree(Way& way, const TopEntry& entry) const {
+        way.in_top = false;
         way.object = entry.object;
         way.instance = &state_.instances[entry.object];
         way.tree = way.instance->tree;
         way.nodes = way.tree->bvh.nodes.data();
+        way.stored[0] = stored_in(way.tree->bvh.nodes, 1);
         way.of_set = !way.tree->bvh.indices.empty();
         if (!way.of_set) {
-            set_leaves(way, way.tree->patches.blocks, 1);
+            way.stored[1] = stored_in(way.tree->patches.blocks, 1);
         } else if (way.instance->joined()) {
-            set_leaves(way, way.tree->elements.rows, way.tree->elements.stride);
+            way.stored[1] = stored_in(way.tree->elements.rows, way.tree->elements.stride);
         } else {
-            set_leaves(way, way.tree->bvh.indices, 1);
+            way.stored[1] = stored_in(way.tree->bvh.indices, 1);
         }
         way.base = way.stack.count;
         way.stack.push(-std::numeric_limits<float>::infinity(), entry.part.bits);
     }
 
     template <typename Array>
-    static HWY_INLINE void set_leaves(Way& way, const Array& array, std::size_t stride) {
-        way.leaves = reinterpret_cast<const std::byte*>(array.data());
-        way.leaf_size = stride * sizeof(array[0]);
+    static HWY_INLINE Stored stored_in(const Array& array, std::size_t stride) {
+        return {reinterpret_cast<const std::byte*>(array.data()), stride * sizeof(array[0])};
     }
 
     // At a leaf of the top tree.
@@ -266,6 +273,7 @@ private:
             auto one = one_of(search_, way.ray, entry.object);
             return trace_entry(state_, entry, rays_[way.ray], space_of(way), query_, one);
         });
+        way.stack.drop_beyond(search_.limits.t_far[way.ray], 0);
     }
 
     [[nodiscard]] const TopEntry* only_tree() const {
@@ -288,15 +296,46 @@ private:
         return *way.space;
     }
 
-    // True: some of its cones wait to be judged.
-    HWY_INLINE bool search_leaf(Way& way) {
-        way.far_before = search_.limits.t_far[way.ray];
-        if (!way.of_set) {
-            way.ended = each_patch(way.tree->patches, way.at,
-                                   [&](const TrianglePatch& patch)
-                                       HWY_ATTR { return search_patch(way, patch); });
-            return false;
+    // First what all of them do, then what few do and can't be foretold: so one way's work begins
+    // before the other's ends.
+    HWY_INLINE void search_leaves(const Ways& some) {
+        Ways met;
+        Ways with_cones;
+        for (std::size_t i = 0; i < some.count; ++i) {
+            Way& way = *some.way[i];
+            way.far_before = search_.limits.t_far[way.ray];
+            if (!way.of_set) {
+                judge_patch(way);
+                met.way[met.count] = &way;
+                met.count += way.verdict.may != 0 ? 1u : 0u;
+            } else if (search_set(way)) {
+                with_cones.way[with_cones.count++] = &way;
+            } else {
+                leave_leaf(way);
+            }
         }
+        for (std::size_t i = 0; i < met.count; ++i) {
+            settle_patch(*met.way[i]);
+            leave_leaf(*met.way[i]);
+        }
+        if (with_cones.count == 0) return;
+        judge_cones();
+        for (std::size_t i = 0; i < with_cones.count; ++i)
+            leave_leaf(*with_cones.way[i]);
+    }
+
+    // At the leaf's first patch; the next one waits.
+    HWY_INLINE void judge_patch(Way& way) {
+        const TrianglePatch& patch = way.tree->patches.at(way.at.index());
+        way.patch = &patch;
+        judge(way, patch, {}, way.verdict);
+        const auto next = static_cast<std::uint32_t>(way.at.index() + patch.size());
+        way.stack.push(-std::numeric_limits<float>::infinity(), WideRef::leaf(next).bits);
+        way.stack.count -= patch.last;
+    }
+
+    // True: some of its cones wait to be judged.
+    HWY_INLINE bool search_set(Way& way) {
         if (way.instance->joined()) return search_joined(way);
         const Shape& shape = state_.scene->objects[way.object].shape;
         const std::span<const std::uint32_t> leaf = indices_of(way.tree->bvh, way.at);
@@ -401,21 +440,18 @@ private:
         }
     }
 
-    // True: the ray has ended.
-    HWY_INLINE bool search_patch(Way& way, const TrianglePatch& patch) {
-        // Most are missed: whose it is comes afterwards.
-        RayVerdict verdict;
-        judge(way, patch, {}, verdict);
-        if (verdict.may == 0) return false;
+    // What it may hit of the patch. Most patches are missed: whose it is comes only now.
+    HWY_INLINE void settle_patch(Way& way) {
+        const TrianglePatch& patch = *way.patch;
         const std::uint32_t index =
             way.instance->joined() ? way.instance->members[patch.member].object : way.object;
-        if (index == kNobody) return false;
+        if (index == kNobody) return;
         const Object& object = state_.scene->objects[index];
-        if ((object.mask & query_.mask) == 0) return false;
+        if ((object.mask & query_.mask) == 0) return;
         const ShownSides shown = shown_sides(object, query_);
-        if (!shown.any()) return false;
-        if (!shown.front || !shown.back) judge(way, patch, shown, verdict);
-        return settle(way, index, patch, verdict);
+        if (!shown.any()) return;
+        if (!shown.front || !shown.back) judge(way, patch, shown, way.verdict);
+        way.ended = settle(way, index, patch, way.verdict);
     }
 
     HWY_INLINE void judge(const Way& way, const TrianglePatch& patch, const ShownSides& shown,
