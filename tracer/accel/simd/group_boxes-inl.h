@@ -22,36 +22,60 @@ inline constexpr int kFewRays = 4;
 inline constexpr float kGrowGroup = 1.0f + 8.0f * 5.9604645e-8f;
 inline constexpr float kShrinkGroup = 1.0f - 8.0f * 5.9604645e-8f;
 
-// The children that some ray of the group may meet before `t_far`, and where it would enter them at
-// the earliest.
+// The children that some ray of the group may meet before `t_far`, far ones first, and where it
+// would enter them at the earliest.
 struct BoxHits {
-    std::uint32_t mask = 0;
-    std::uint32_t by_all = 0;                   // those that all lines meet, wherever on them
-    HWY_ALIGN std::array<float, kWidth> enter;  // at the earliest; of those in the mask
+    std::size_t count = 0;
+    HWY_ALIGN std::array<std::uint32_t, kWidth> child;  // its number
+    HWY_ALIGN std::array<float, kWidth> enter;
+    std::uint32_t by_all = 0;  // children that all lines meet, wherever on them, as a mask
 };
+
+// How a node's boxes lie along the group's rays, by child.
+struct BoxIntervals {
+    HWY_ALIGN std::array<float, kWidth> near;
+    HWY_ALIGN std::array<float, kWidth> far;
+};
+
+HWY_INLINE void order_met(const WideNode& node, std::size_t octant, const BoxIntervals& boxes,
+                          BoxHits& hits) {
+#if HWY_TARGET <= HWY_AVX2
+    const Boxes d;
+    const FarToNear order(node, octant);
+    const auto near = order.of(hn::Load(d, boxes.near.data()));
+    const auto far = order.of(hn::Load(d, boxes.far.data()));
+    const Packing<Boxes> met(hn::Le(near, far));
+    hn::StoreU(met.of(near), d, hits.enter.data());
+    hn::StoreU(met.of(order.numbers()), FarToNear::Numbers(), hits.child.data());
+    hits.count = met.count();
+#else
+    hits.count = 0;
+    for (std::uint32_t order = node.far_to_near(octant), i = 0; i < kWidth; ++i, order >>= 3) {
+        const std::uint32_t child = order & 7u;
+        hits.child[hits.count] = child;
+        hits.enter[hits.count] = boxes.near[child];
+        hits.count += boxes.near[child] <= boxes.far[child] ? 1u : 0u;
+    }
+#endif
+}
 
 HWY_INLINE void meet_group(const GroupSpace& space, const WideNode& node, float t_min, float t_far,
                            BoxHits& hits) {
-    const hn::CappedTag<float, kWidth> d;
-    std::uint32_t mask = 0;
-    std::uint32_t by_all = 0;
-    for (std::size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
+    const Boxes d;
+    BoxIntervals boxes;  // NOLINT: not initialised, as all are set
+    hits.by_all = 0;
+    for (std::size_t i = 0; i < kWidth; i += kBoxesAtOnce) {
         auto near = hn::Set(d, t_min);
         auto far = hn::Set(d, t_far);
         auto last_near = near;
         auto first_far = hn::Set(d, std::numeric_limits<float>::infinity());
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const bool negative = space.first[axis] >= 3;
-            const float near_origin = negative ? space.origin_low[axis] - space.slop[axis]
-                                               : space.origin_high[axis] + space.slop[axis];
-            const float far_origin = negative ? space.origin_high[axis] + space.slop[axis]
-                                              : space.origin_low[axis] - space.slop[axis];
             const auto low = hn::Set(d, space.inverse_low[axis]);
             const auto high = hn::Set(d, space.inverse_high[axis]);
             const auto to_first = hn::Sub(hn::Load(d, node.planes[space.first[axis]].data() + i),
-                                          hn::Set(d, near_origin));
+                                          hn::Set(d, space.near_origin[axis]));
             const auto to_second = hn::Sub(hn::Load(d, node.planes[space.second[axis]].data() + i),
-                                           hn::Set(d, far_origin));
+                                           hn::Set(d, space.far_origin[axis]));
             const auto near_low = hn::Mul(to_first, low);
             const auto near_high = hn::Mul(to_first, high);
             const auto far_low = hn::Mul(to_second, low);
@@ -65,16 +89,11 @@ HWY_INLINE void meet_group(const GroupSpace& space, const WideNode& node, float 
         }
         near = hn::Mul(near, hn::Set(d, kShrinkGroup));
         far = hn::Mul(far, hn::Set(d, kGrowGroup));
-        hn::Store(near, d, hits.enter.data() + i);
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(d, hn::Le(near, far), bits);
-        mask |= static_cast<std::uint32_t>(bits[0]) << i;
-        if (!space.one_origin) continue;
-        hn::StoreMaskBits(d, hn::Le(last_near, first_far), bits);
-        by_all |= static_cast<std::uint32_t>(bits[0]) << i;
+        if (space.one_origin) hits.by_all |= box_bits(hn::Le(last_near, first_far)) << i;
+        hn::Store(near, d, boxes.near.data() + i);
+        hn::Store(far, d, boxes.far.data() + i);
     }
-    hits.mask = mask;
-    hits.by_all = by_all;
+    order_met(node, space.octant, boxes, hits);
 }
 
 // Of the rays in `mask` those that may meet child i before their t_far.
@@ -93,7 +112,7 @@ HWY_INLINE RayMask meet_rays(const GroupSpace& space, const GroupLimits& limits,
         }
     }
     RayMask met = 0;
-    each_vector(mask, [&](std::size_t ray, RayMask bits) HWY_ATTR {
+    every_vector(mask, [&](std::size_t ray, RayMask bits) HWY_ATTR {
         RayFloats near[3];
         RayFloats far[3];
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -123,7 +142,7 @@ HWY_INLINE RayMask meet_rays(const GroupSpace& space, const GroupLimits& limits,
 HWY_INLINE float farthest(const GroupLimits& limits, RayMask mask) {
     const Rays d;
     auto far = hn::Set(d, -std::numeric_limits<float>::infinity());
-    each_vector(mask, [&](std::size_t ray, RayMask bits) HWY_ATTR {
+    every_vector(mask, [&](std::size_t ray, RayMask bits) HWY_ATTR {
         const auto its_far = hn::Load(d, limits.t_far.data() + ray);
         far = hn::Max(far, hn::IfThenElse(ray_mask(bits), its_far, far));
     });
@@ -164,14 +183,14 @@ void walk_group(const WideBvh& bvh, const WideRef& start, const GroupSpace& spac
         }
         const WideNode& node = bvh.nodes[ref.index()];
         meet_group(space, node, space.t_least(), far, hits);
-        std::uint32_t order = node.far_to_near(space.octant);
-        for (std::size_t k = 0; k < kWidth; ++k, order >>= 3) {
-            const std::size_t i = order & 7u;
-            if (((hits.mask >> i) & 1u) == 0) continue;
+        for (std::size_t k = 0; k < hits.count; ++k) {
+            const std::size_t i = hits.child[k];
             const RayMask mask = ((hits.by_all >> i) & 1u) != 0
                                      ? at.mask
                                      : meet_rays(space, limits, node, i, at.mask);
-            if (mask != 0) stack[waiting++] = {mask, node.child[i], hits.enter[i], far, leaves};
+            // Without a branch, as it can't be foretold.
+            stack[waiting] = {mask, node.child[i], hits.enter[k], far, leaves};
+            waiting += mask != 0 ? 1u : 0u;
         }
     }
 }

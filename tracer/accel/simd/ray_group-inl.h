@@ -50,6 +50,19 @@ HWY_INLINE void each_vector(RayMask mask, const Body& body) {
     }
 }
 
+// Calls it for all vectors, where these are few: for short work of which most vectors have some,
+// as it can't be foretold how many.
+template <typename Body>
+HWY_INLINE void every_vector(RayMask mask, const Body& body) {
+    if constexpr (kGroup / kAtOnce <= 4) {
+        HWY_UNROLL(4)
+        for (std::size_t first = 0; first < kGroup; first += kAtOnce)
+            body(first, (mask >> first) & kAllAtOnce);
+    } else {
+        each_vector(mask, body);
+    }
+}
+
 template <typename Body>
 HWY_INLINE void each_ray(RayMask mask, const Body& body) {
     for (; mask != 0; mask &= mask - 1)
@@ -181,7 +194,9 @@ struct GroupSpace {
     std::array<float, 3> inverse_low{}, inverse_high{};
     std::array<std::size_t, 3> first{}, second{};  // the plane of a box that they meet first
     std::size_t octant = 0;
-    std::array<float, 3> slop{};      // boxes are widened by it
+    std::array<float, 3> slop{};  // boxes are widened by it
+    // As far as an origin can be from a box's first plane and from its second one.
+    std::array<float, 3> near_origin{}, far_origin{};
     float steepest_direction = 0.0f;  // the largest component
     // The largest coordinate that origins were rounded from, or one whose rounding moves them as
     // far as they may stray; or 0.
@@ -216,6 +231,10 @@ struct GroupSpace {
             slop[axis] = std::max(relative_slop, flat ? 0x1p-20f : kDoubleSlop) * reach;
             // More than what rounding takes away where it is added to an origin or a plane.
             if (course.backwards()) slop[axis] += course.stray + 4.0f * kUnit * reach;
+            const float least = origin_low[axis] - slop[axis];
+            const float most = origin_high[axis] + slop[axis];
+            near_origin[axis] = negative ? least : most;
+            far_origin[axis] = negative ? most : least;
         }
     }
 

@@ -56,6 +56,31 @@ HWY_INLINE std::uint32_t box_bits(M mask) {
     return stored[0];
 }
 
+#if HWY_TARGET <= HWY_AVX2
+// A node's children from far to near, for an octant of directions.
+class FarToNear {
+public:
+    using Numbers = hn::Rebind<std::uint32_t, Boxes>;
+
+    HWY_INLINE FarToNear(const WideNode& node, std::size_t octant)
+        : order_(hn::Shr(hn::Set(Numbers(), node.far_to_near(octant)),
+                         hn::Load(Numbers(), kShifts))) {}
+
+    HWY_INLINE hn::Vec<Boxes> of(hn::Vec<Boxes> v) const {
+        return hn::Vec<Boxes>{_mm256_permutevar8x32_ps(v.raw, order_.raw)};
+    }
+    HWY_INLINE hn::Vec<Numbers> of(hn::Vec<Numbers> v) const {
+        return hn::Vec<Numbers>{_mm256_permutevar8x32_epi32(v.raw, order_.raw)};
+    }
+    HWY_INLINE hn::Vec<Numbers> numbers() const { return hn::And(order_, hn::Set(Numbers(), 7u)); }
+
+private:
+    HWY_ALIGN static constexpr std::uint32_t kShifts[8] = {0, 3, 6, 9, 12, 15, 18, 21};
+
+    hn::Vec<Numbers> order_;  // beyond bit 2: whatever
+};
+#endif
+
 // Where a ray may go on, and where it enters there at the earliest. Not initialised, as it is
 // large. What waits in the top tree and in an object's may lie on one stack.
 struct WaitingBoxes {
@@ -169,13 +194,10 @@ private:
                                  WaitingBoxes& stack) const {
         const Boxes d;
         const hn::Rebind<std::uint32_t, Boxes> du;
-        HWY_ALIGN static constexpr std::uint32_t kShifts[8] = {0, 3, 6, 9, 12, 15, 18, 21};
-        const auto order = hn::Shr(hn::Set(du, node.far_to_near(octant_)), hn::Load(du, kShifts));
-        const BoxFloats near{_mm256_permutevar8x32_ps(met.near.raw, order.raw)};
-        const BoxFloats far{_mm256_permutevar8x32_ps(met.far.raw, order.raw)};
-        const hn::Vec<decltype(du)> child{
-            _mm256_permutevar8x32_epi32(hn::Load(du, node.child.data()).raw, order.raw)};
-        const Packing<Boxes> met_ones(hn::Le(near, far));
+        const FarToNear order(node, octant_);
+        const auto near = order.of(met.near);
+        const auto child = order.of(hn::Load(du, node.child.data()));
+        const Packing<Boxes> met_ones(hn::Le(near, order.of(met.far)));
         hn::StoreU(met_ones.of(near), d, stack.enter + stack.count);
         hn::StoreU(met_ones.of(child), du, stack.ref + stack.count);
         stack.count += met_ones.count();
