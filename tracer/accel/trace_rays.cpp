@@ -52,7 +52,7 @@ void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::s
         search.limits = chunk.limits;
         search.candidate_from.fill(std::numeric_limits<float>::infinity());
         follow(search);
-        decide_winners(state, search, chunk.world, rays, query, hits);
+        decide_winners(state, search, chunk.world, chunk.limits, rays, query, hits);
         alone |= search.lost;
         missed &= ~(search.found | search.rivalled);
     };

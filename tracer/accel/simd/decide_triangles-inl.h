@@ -36,6 +36,8 @@ inline constexpr int kWorthInPlace = static_cast<int>(kDoublesAtOnce + 1) / 2;
 
 // By corner and axis; the fourth is nobody's.
 using TriangleCorners = std::array<std::array<float, 4>, 3>;
+// A triangle for each lane.
+using CornersOfLanes = std::array<const TriangleCorners*, kDoublesAtOnce>;
 
 // Rays with a triangle each, a row for each pair: that is how they come.
 struct TrianglePairs {
@@ -107,8 +109,9 @@ struct TriangleColumns {
 
     // The same with a triangle each.
     HWY_INLINE TriangleColumns(const GroupRays& rays, std::size_t first,
-                               const TrianglePairs::CornerRows& rows) {
-        set_corners(rows);
+                               const CornersOfLanes& corners) {
+        for (std::size_t k = 0; k < 3; ++k)
+            set_corner(corners, k);
         set_rays(rays, first);
     }
 
@@ -146,6 +149,47 @@ private:
             origin[axis] = load(rays.origin[axis]);
             direction[axis] = load(rays.direction[axis]);
         }
+    }
+
+    HWY_INLINE void set_corner(const CornersOfLanes& corners, std::size_t k) {
+#if HWY_TARGET <= HWY_AVX2
+        // Straight from where they are: numbers that have just been stored one by one can't be
+        // loaded several at once without waiting.
+        const Doubles d;
+        const hn::Rebind<float, Doubles> of_float;
+        const hn::RepartitionToWide<decltype(of_float)> pairs;
+        const hn::FixedTag<float, 4> row;
+        const auto load = [&](std::size_t lane)
+                              HWY_ATTR { return hn::LoadU(row, (*corners[lane])[k].data()); };
+#if HWY_TARGET <= HWY_AVX3
+        const auto rows = [&](std::size_t lane) HWY_ATTR {
+            return hn::Combine(of_float, load(lane + 4), load(lane));
+        };
+#else
+        const auto& rows = load;
+#endif
+        const auto a = rows(0);
+        const auto b = rows(1);
+        const auto c = rows(2);
+        const auto e = rows(3);
+        const auto low = [&](auto x, auto y) HWY_ATTR {
+            return hn::BitCast(pairs, hn::InterleaveLower(of_float, x, y));
+        };
+        const auto high = [&](auto x, auto y) HWY_ATTR {
+            return hn::BitCast(pairs, hn::InterleaveUpper(of_float, x, y));
+        };
+        const auto promote = [&](auto column) HWY_ATTR {
+            return hn::PromoteTo(d, hn::BitCast(of_float, column));
+        };
+        corner[k][0] = promote(hn::InterleaveLower(pairs, low(a, b), low(c, e)));
+        corner[k][1] = promote(hn::InterleaveUpper(pairs, low(a, b), low(c, e)));
+        corner[k][2] = promote(hn::InterleaveLower(pairs, high(a, b), high(c, e)));
+#else
+        HWY_ALIGN TrianglePairs::Rows<TrianglePairs::CornerRow> rows;
+        for (std::size_t lane = 0; lane < kDoublesAtOnce; ++lane)
+            rows[lane] = (*corners[lane])[k];
+        set_corner(rows, corner[k]);
+#endif
     }
 
     HWY_INLINE void set_corners(const TrianglePairs::CornerRows& rows) {

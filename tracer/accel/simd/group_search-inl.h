@@ -47,7 +47,8 @@ struct ClosestOfGroup {
     // Behind the shared ones each ray has a place of its own.
     HWY_ALIGN std::array<Candidate, kMostCandidates + kGroup> candidates;
     std::uint32_t candidate_count = 0;
-    RayMask found = 0;  // rays with a candidate
+    RayMask found = 0;         // rays with a candidate
+    RayMask in_own_place = 0;  // rays that had their candidate there at some time
     RayMask rivalled = 0;
     RayMask lost = 0;  // rays with too many rivals, to be traced one by one
     std::array<RayAndPrimitive, kMostRivals> rivals;

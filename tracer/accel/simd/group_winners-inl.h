@@ -45,14 +45,19 @@ inline void choose(const AccelState& state, const ClosestOfGroup& search, std::s
 // Candidates of rays without rivals as far as they are triangles, several at once.
 class SoleTriangles {
 public:
-    // `world` holds the rays.
+    // `world` holds the rays, `limits` their intervals as they came.
     SoleTriangles(const AccelState& state, const ClosestOfGroup& search, const GroupRays& world,
-                  std::span<const Ray> rays, std::span<Hit> hits)
-        : state_(state), search_(search), world_(world), rays_(rays), hits_(hits) {}
+                  const GroupLimits& limits, std::span<const Ray> rays, std::span<Hit> hits)
+        : state_(state),
+          search_(search),
+          world_(world),
+          limits_(limits),
+          rays_(rays),
+          hits_(hits) {}
 
     // Those that it doesn't decide stay in the mask that it returns.
     RayMask decide(RayMask mask) {
-        const RayMask others = decide_neighbours(mask);
+        const RayMask others = mask & ~decide_neighbours(in_world(mask));
         decide_rays(
             others,
             [&](std::size_t ray, TrianglePairs& pairs, std::size_t lane)
@@ -63,48 +68,74 @@ public:
     }
 
 private:
-    // Returns the others.
-    RayMask decide_neighbours(RayMask mask) {
-        constexpr RayMask kSome = (RayMask{1} << kDoublesAtOnce) - 1;
-        RayMask others = mask;
-        TriangleAnswers answers;
-        for (std::size_t first = 0; first < kGroup; first += kDoublesAtOnce) {
-            const RayMask some = in_world(first, (mask >> first) & kSome);
-            if (std::popcount(some) < kWorthInPlace) continue;
-            others &= ~(some << first);
-            decide_in_place(first, some, answers);
-            each_ray(some, [&](std::size_t lane) HWY_ATTR { settle(first + lane, answers, lane); });
-        }
-        return others;
+    using Lanes = hn::Rebind<float, Doubles>;
+    using NumberLanes = hn::Rebind<std::uint32_t, Doubles>;
+    static constexpr RayMask kAllLanes = (RayMask{1} << kDoublesAtOnce) - 1;
+
+    template <class D, class M>
+    static HWY_INLINE RayMask lane_bits(D d, M mask) {
+        std::uint8_t stored[8] = {};
+        hn::StoreMaskBits(d, mask, stored);
+        return stored[0];
     }
 
-    // Of the mask's rays, counted from `first` on, those whose triangle is kept in world space.
-    [[nodiscard]] HWY_INLINE RayMask in_world(std::size_t first, RayMask mask) const {
+    // Returns those that it decided or left.
+    RayMask decide_neighbours(RayMask mask) {
+        RayMask done = 0;
+        TriangleAnswers answers;
+        for (std::size_t first = 0; first < kGroup; first += kDoublesAtOnce) {
+            const RayMask some = (mask >> first) & kAllLanes;
+            if (std::popcount(some) < kWorthInPlace) continue;
+            done |= some << first;
+            decide_in_place(first, some, answers);
+            settle_some(first, some, answers);
+        }
+        return done;
+    }
+
+    // The mask's rays whose triangle is kept in world space.
+    [[nodiscard]] HWY_INLINE RayMask in_world(RayMask mask) const {
+        const auto fits = [](const Candidate& candidate) {
+            return candidate.instance != nullptr && candidate.instance->identity;
+        };
+        bool all_fit = true;
+        for (std::size_t i = 0; i < search_.candidate_count; ++i)
+            all_fit &= fits(search_.candidates[i]);
         RayMask result = mask;
-        each_ray(mask, [&](std::size_t lane) HWY_ATTR {
-            const Instance* instance = search_.candidate_of(first + lane).instance;
-            if (instance == nullptr || !instance->identity) result &= ~(RayMask{1} << lane);
-        });
+        each_ray(mask & (all_fit ? search_.in_own_place : ~RayMask{0}),
+                 [&](std::size_t ray) HWY_ATTR {
+                     if (!fits(search_.candidate_of(ray))) result &= ~(RayMask{1} << ray);
+                 });
         return result;
     }
 
     HWY_INLINE void decide_in_place(std::size_t first, RayMask mask, TriangleAnswers& answers) {
         const auto some = static_cast<std::size_t>(std::countr_zero(mask));
-        const Candidate& one = search_.candidate_of(first + some);
-        bool alike = true;
-        each_ray(mask, [&](std::size_t lane)
-                           HWY_ATTR { alike &= &search_.candidate_of(first + lane) == &one; });
-        if (alike) {
-            HWY_NAMESPACE::decide(TriangleColumns(world_, first, one.corners), answers);
+        const std::uint32_t one = search_.candidate[first + some];
+        const NumberLanes d;
+        const auto places = hn::LoadU(d, search_.candidate.data() + first);
+        if ((mask & ~lane_bits(d, hn::Eq(places, hn::Set(d, one)))) == 0) {
+            HWY_NAMESPACE::decide(TriangleColumns(world_, first, search_.candidates[one].corners),
+                                  answers);
             return;
         }
+        CornersOfLanes corners;
         for (std::size_t lane = 0; lane < kDoublesAtOnce; ++lane) {
             const bool is_there = ((mask >> lane) & 1) != 0;
-            const Candidate& candidate = is_there ? search_.candidate_of(first + lane) : one;
-            for (std::size_t k = 0; k < 3; ++k)
-                corners_[k][lane] = candidate.corners[k];
+            const std::uint32_t place = is_there ? search_.candidate[first + lane] : one;
+            corners[lane] = &search_.candidates[place].corners;
         }
-        HWY_NAMESPACE::decide(TriangleColumns(world_, first, corners_), answers);
+        HWY_NAMESPACE::decide(TriangleColumns(world_, first, corners), answers);
+    }
+
+    HWY_INLINE void settle_some(std::size_t first, RayMask mask, const TriangleAnswers& answers) {
+        const Lanes d;
+        const auto t = hn::Load(d, answers.t.data());
+        const auto within = hn::And(hn::Gt(t, hn::LoadU(d, limits_.t_min.data() + first)),
+                                    hn::Lt(t, hn::LoadU(d, limits_.t_far.data() + first)));
+        const RayMask hit = mask & answers.hit & lane_bits(d, within);
+        left_ |= (mask & ~hit) << first;
+        each_ray(hit, [&](std::size_t lane) HWY_ATTR { set_hit(first + lane, answers, lane); });
     }
 
     HWY_INLINE bool set(std::size_t ray, TrianglePairs& pairs, std::size_t lane) {
@@ -134,6 +165,10 @@ private:
             left_ |= RayMask{1} << ray;
             return;
         }
+        set_hit(ray, answers, lane);
+    }
+
+    HWY_INLINE void set_hit(std::size_t ray, const TriangleAnswers& answers, std::size_t lane) {
         const Candidate& candidate = search_.candidate_of(ray);
         hits_[ray] = {state_.scene->objects[candidate.object].id,
                       candidate.primitive,
@@ -145,18 +180,19 @@ private:
     const AccelState& state_;
     const ClosestOfGroup& search_;
     const GroupRays& world_;
+    const GroupLimits& limits_;
     std::span<const Ray> rays_;
     std::span<Hit> hits_;
-    HWY_ALIGN TrianglePairs::CornerRows corners_;  // of decide_in_place
     RayMask left_ = 0;
 };
 
-// The hits of all rays that found something and aren't lost. `world` holds the rays.
+// The hits of all rays that found something and aren't lost. `world` holds the rays, `limits` their
+// intervals as they came.
 inline void decide_winners(const AccelState& state, const ClosestOfGroup& search,
-                           const GroupRays& world, std::span<const Ray> rays, const RayQuery& query,
-                           std::span<Hit> hits) {
+                           const GroupRays& world, const GroupLimits& limits,
+                           std::span<const Ray> rays, const RayQuery& query, std::span<Hit> hits) {
     const RayMask sole = search.found & ~search.rivalled;
-    const RayMask elements = SoleTriangles(state, search, world, rays, hits).decide(sole);
+    const RayMask elements = SoleTriangles(state, search, world, limits, rays, hits).decide(sole);
     RayMask open = search.rivalled & ~search.lost;
     open |= decide_sole_elements(state, search, elements, world, rays, query, hits);
     each_ray(open, [&](std::size_t ray)

@@ -216,6 +216,7 @@ HWY_INLINE Candidate* take_alone(ClosestOfGroup& search, std::size_t ray, float 
     if (!precedes_candidate(search, ray, from, to, object, primitive)) return nullptr;
     const std::size_t place = ClosestOfGroup::kMostCandidates + ray;
     search.candidate[ray] = static_cast<std::uint32_t>(place);
+    search.in_own_place |= RayMask{1} << ray;
     search.candidates[place].object = object;
     search.candidates[place].primitive = primitive;
     search.candidates[place].instance = nullptr;
