@@ -63,13 +63,23 @@ public:
     void judge_patch(const Searched& searched, const GroupSpace& space,
                      const GroupTriangles& triangles, const TrianglePatch& patch, RayMask mask) {
         PatchNotes notes;
-        RayVerdict verdict;
-        each_ray(mask, [&](std::size_t ray) HWY_ATTR {
-            judge_patch_of_ray(space.rays, search_.limits, ray, triangles, patch.triangles,
-                               searched.shown, verdict);
-            if (verdict.may != 0)
-                settle_ray(searched.object, triangles, patch, ray, verdict, notes);
-        });
+        // First what all rays do, then what few do and can't be foretold: so one ray's work begins
+        // before the other's ends.
+        constexpr std::size_t kSome = 8;
+        std::array<RayVerdict, kSome + 1> verdicts;
+        std::array<std::size_t, kSome + 1> met;
+        while (mask != 0) {
+            std::size_t count = 0;
+            for (std::size_t i = 0; i < kSome && mask != 0; ++i, mask &= mask - 1) {
+                const auto ray = static_cast<std::size_t>(std::countr_zero(mask));
+                judge_patch_of_ray(space.rays, search_.limits, ray, triangles, patch.triangles,
+                                   searched.shown, verdicts[count]);
+                met[count] = ray;
+                count += verdicts[count].may != 0 ? 1u : 0u;
+            }
+            for (std::size_t i = 0; i < count; ++i)
+                settle_ray(searched.object, triangles, patch, met[i], verdicts[i], notes);
+        }
         for (std::size_t i = 0; i < patch.triangles; ++i) {
             if (notes.open[i] == 0) continue;
             settle_open(space, state_.instances[searched.object], searched.object,
