@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include <hwy/highway.h>
 
@@ -92,6 +93,9 @@ private:
                     GroupLimits& back) const {
         const Rays d;
         const auto slack = hn::Set(d, course.slack);
+        // Of rays that aren't there, too: see every_vector.
+        back.t_min.fill(0.0f);
+        back.t_far.fill(-std::numeric_limits<float>::infinity());
         each_vector(mask, [&](std::size_t i, RayMask) HWY_ATTR {
             const auto s = hn::Load(d, lengths.data() + i);
             const auto t_min = hn::Load(d, limits.t_min.data() + i);

@@ -79,7 +79,7 @@ private:
         return stored[0];
     }
 
-    // Returns those that it decided or left.
+    // Returns those that it was for, which have their hits now or are left for others to decide.
     RayMask decide_neighbours(RayMask mask) {
         RayMask done = 0;
         TriangleAnswers answers;
@@ -93,7 +93,8 @@ private:
         return done;
     }
 
-    // The mask's rays whose triangle is kept in world space.
+    // The mask's rays whose triangle is kept in world space. Most rays share candidates, so that
+    // these are asked first.
     [[nodiscard]] HWY_INLINE RayMask in_world(RayMask mask) const {
         const auto fits = [](const Candidate& candidate) {
             return candidate.instance != nullptr && candidate.instance->identity;

@@ -50,8 +50,8 @@ HWY_INLINE void each_vector(RayMask mask, const Body& body) {
     }
 }
 
-// Calls it for all vectors, where these are few: for short work of which most vectors have some,
-// as it can't be foretold how many.
+// The same for short work that most vectors have: where there are few, calls body for all of them,
+// with no bits where there are no such rays, as it can't be foretold how many have.
 template <typename Body>
 HWY_INLINE void every_vector(RayMask mask, const Body& body) {
     if constexpr (kGroup / kAtOnce <= 4) {
@@ -195,7 +195,7 @@ struct GroupSpace {
     std::array<std::size_t, 3> first{}, second{};  // the plane of a box that they meet first
     std::size_t octant = 0;
     std::array<float, 3> slop{};  // boxes are widened by it
-    // As far as an origin can be from a box's first plane and from its second one.
+    // As near as an origin can be to a box's first plane, and as far as it can be from the second.
     std::array<float, 3> near_origin{}, far_origin{};
     float steepest_direction = 0.0f;  // the largest component
     // The largest coordinate that origins were rounded from, or one whose rounding moves them as

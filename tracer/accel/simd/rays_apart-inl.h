@@ -86,7 +86,7 @@ private:
     // So many make a loop worth its while.
     static constexpr std::size_t kLeaves = 8;
 
-    // What a tree's places stand for, in memory.
+    // What a tree's references stand for, in memory.
     struct Stored {
         const std::byte* first;
         std::size_t size;  // of each
@@ -97,12 +97,13 @@ private:
         std::size_t ray;
         WideRef at;
         const WideNode* nodes;         // of the tree that it is in
-        std::array<Stored, 2> stored;  // these, and what its leaves hold
-        bool in_top;                   // it is in the top tree. Else:
+        std::array<Stored, 2> stored;  // these, and what its leaves hold: by the leaf's bit
+        bool in_top;                   // it is in the top tree; else in an object's:
         const PrimitiveTree* tree;
         const Instance* instance;
         std::uint32_t object;
-        bool of_set;       // of spheres or cones; else of triangles
+        bool of_set;  // of spheres or cones; else of triangles
+
         std::size_t base;  // what waits below is of the top tree; in that it is 0
         bool is_last;      // the tree is all that there is
         bool ended;        // nothing more is wanted of the ray
@@ -207,7 +208,7 @@ private:
         return true;
     }
 
-    // The way has no more of this tree.
+    // The same of a way that has no more of its tree: in the top tree, or with another ray.
     template <typename Start>
     HWY_NOINLINE bool goes_on_elsewhere(Way& way, RayMask& pending, const Start& start) {
         if (!way.in_top && !way.is_last) {
@@ -324,7 +325,8 @@ private:
             leave_leaf(*with_cones.way[i]);
     }
 
-    // At the leaf's first patch; the next one waits.
+    // The leaf's next patch, if there is one, waits where the leaf did: never too far away to be
+    // looked at.
     HWY_INLINE void judge_patch(Way& way) {
         const TrianglePatch& patch = way.tree->patches.at(way.at.index());
         way.patch = &patch;
