@@ -44,6 +44,25 @@ std::vector<MeshId> joined_in(const Scene& scene) {
     return ids;
 }
 
+// Of small ones among large ones, and of just one.
+TEST(JoinedMeshes, KnowWhoseEachTriangleIs) {
+    for (const std::vector<std::size_t>& sizes :
+         {std::vector<std::size_t>{7}, {1, 1, 1}, {1, 900, 2, 1, 1, 1, 5000, 3}}) {
+        std::vector<Mesh> meshes(sizes.size());
+        std::vector<const Mesh*> pointers;
+        std::vector<std::size_t> expected;
+        for (std::size_t i = 0; i < sizes.size(); ++i) {
+            meshes[i].triangles = std::vector<glm::uvec3>(sizes[i]);
+            pointers.push_back(&meshes[i]);
+            expected.insert(expected.end(), sizes[i], i);
+        }
+        const JoinedMeshes joined(pointers);
+        ASSERT_EQ(joined.triangles(), expected.size());
+        for (std::size_t triangle = 0; triangle < expected.size(); ++triangle)
+            EXPECT_EQ(joined.member_of(triangle), expected[triangle]) << "triangle " << triangle;
+    }
+}
+
 TEST(JoinableMeshes, StandWhereTheyAreAndNowhereElse) {
     Scene scene = soups();
     scene.objects[1].world_from_object = translate({0.0, 1e-9, 0.0});

@@ -165,6 +165,7 @@ std::vector<JoinableMesh> joinable_meshes(const Scene& scene, const BuildOptions
     // their own are as good.
     constexpr float kInEachOthersWay = 5.0f;
     std::vector<JoinableMesh> meshes = meshes_in_place(scene);
+    if (static_cast<float>(meshes.size()) < kInEachOthersWay) return {};
     measure(meshes, options);
     if (meshes.size() > JoinedMeshes::kMostMeshes ||
         !worth_joining(meshes, kInEachOthersWay, JoinedMeshes::kMostTriangles)) {

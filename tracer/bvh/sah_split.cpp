@@ -132,32 +132,24 @@ Binning::Binning(const Box4& twice_centres, std::size_t refs)
 
 Bins::Bins(const Binning& binning) : size_(binning.count()) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    const BinBox empty{all4(kInfinity), all4(-kInfinity)};
-    for (int axis = 0; axis < 3; ++axis) {
-        std::fill_n(boxes_.begin() + static_cast<std::ptrdiff_t>(at(axis, 0)), size_, empty);
-        std::fill_n(counts_.begin() + static_cast<std::ptrdiff_t>(at(axis, 0)), size_, 0u);
-    }
+    const Bin empty{all4(kInfinity), all4(-kInfinity), 0};
+    for (int axis = 0; axis < 3; ++axis)
+        std::fill_n(bins_.begin() + static_cast<std::ptrdiff_t>(at(axis, 0)), size_, empty);
 }
 
 void Bins::add(std::span<const BoxRef> refs, const Binning& binning) {
     for (const BoxRef& ref : refs) {
         const Int4 bin = __builtin_convertvector(binning.place(ref), Int4);
-        for (int axis = 0; axis < 3; ++axis) {
-            const std::size_t i = at(axis, bin[axis]);
-            boxes_[i].min = min4(boxes_[i].min, ref.min);
-            boxes_[i].max = max4(boxes_[i].max, ref.max);
-            ++counts_[i];
-        }
+        for (int axis = 0; axis < 3; ++axis)
+            bins_[at(axis, bin[axis])].extend(ref.min, ref.max, 1);
     }
 }
 
 void Bins::extend(const Bins& other) {
     for (int axis = 0; axis < 3; ++axis) {
         for (int bin = 0; bin < size_; ++bin) {
-            const std::size_t i = at(axis, bin);
-            boxes_[i].min = min4(boxes_[i].min, other.boxes_[i].min);
-            boxes_[i].max = max4(boxes_[i].max, other.boxes_[i].max);
-            counts_[i] += other.counts_[i];
+            const Bin& more = other.bins_[at(axis, bin)];
+            bins_[at(axis, bin)].extend(more.min, more.max, more.count);
         }
     }
 }

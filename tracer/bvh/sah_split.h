@@ -46,28 +46,37 @@ public:
     void extend(const Bins& other);
 
     [[nodiscard]] Box4 box(int axis, int bin) const {
-        const BinBox& box = boxes_[at(axis, bin)];
-        return {box.min, box.max};
+        const Bin& it = bins_[at(axis, bin)];
+        return {it.min, it.max};
     }
-    [[nodiscard]] std::uint32_t count(int axis, int bin) const { return counts_[at(axis, bin)]; }
+    [[nodiscard]] std::uint32_t count(int axis, int bin) const {
+        return bins_[at(axis, bin)].count;
+    }
     [[nodiscard]] int size() const { return size_; }
     // Around the bins [begin, end).
     [[nodiscard]] Box4 box(int axis, int begin, int end) const;
 
 private:
-    // Not a Box4, which would be initialised even where no bin is.
-    struct BinBox {
+    // Of a size that makes its place simple to work out. Not a Box4, which would be initialised
+    // even where no bin is.
+    struct alignas(64) Bin {
         Float4 min;
         Float4 max;
+        std::uint32_t count;
+
+        void extend(const Float4& low, const Float4& high, std::uint32_t refs) {
+            min = min4(min, low);
+            max = max4(max, high);
+            count += refs;
+        }
     };
 
     [[nodiscard]] static std::size_t at(int axis, int bin) {
-        return static_cast<std::size_t>(axis) * kMost + static_cast<std::size_t>(bin);
+        return static_cast<std::size_t>(axis) * kMost + static_cast<std::uint32_t>(bin);
     }
 
     int size_;
-    std::array<BinBox, 3 * kMost> boxes_;  // valid up to size_, an axis
-    std::array<std::uint32_t, 3 * kMost> counts_;
+    std::array<Bin, 3 * kMost> bins_;  // valid up to size_, an axis
 };
 
 struct Split {
