@@ -1,8 +1,7 @@
 // The trees over boxes: what every tree must be, and what the builders promise about theirs.
 #include "tracer/bvh/bvh.h"
-#include "tests/binary_form.h"
+#include "tests/boxes.h"
 #include "tests/random.h"
-#include "tracer/bvh/bvh_fast.h"
 #include "tracer/error.h"
 
 #include <gmock/gmock.h>
@@ -22,55 +21,14 @@
 namespace raypick {
 namespace {
 
-using Boxes = std::vector<Bounds>;
-
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-BoxSource source_of(const Boxes& boxes) {
-    return [&boxes](std::size_t first, std::span<Bounds> wanted) {
-        std::copy_n(boxes.begin() + static_cast<std::ptrdiff_t>(first), wanted.size(),
-                    wanted.begin());
-    };
-}
 
 bool usable(const Bounds& box) {
     for (int axis = 0; axis < 3; ++axis) {
         if (!std::isfinite(box.min[axis]) || !std::isfinite(box.max[axis])) return false;
     }
     return !box.empty();
-}
-
-// Boxes about as large as their distances, in a cube.
-Boxes scattered(std::uint64_t seed, std::size_t count, double size) {
-    Random random(seed);
-    Boxes boxes(count);
-    for (Bounds& box : boxes) {
-        const glm::dvec3 centre = random.point(glm::dvec3(-1.0), glm::dvec3(1.0));
-        box.extend(glm::vec3(centre + size * random.point(glm::dvec3(-1.0), glm::dvec3(1.0))));
-        box.extend(glm::vec3(centre + size * random.point(glm::dvec3(-1.0), glm::dvec3(1.0))));
-    }
-    return boxes;
-}
-
-// Few large boxes among many small ones in clusters, as a building's model has.
-Boxes clustered(std::uint64_t seed, std::size_t count) {
-    Random random(seed);
-    Boxes boxes;
-    glm::dvec3 centre(0.0);
-    while (boxes.size() < count) {
-        if (boxes.size() % 100 == 0) {
-            centre = random.point({-10.0, -2.0, -5.0}, {10.0, 2.0, 5.0});
-        }
-        const double size = random.below(50) == 0 ? 3.0 : 0.02;
-        Bounds box;
-        for (int i = 0; i < 3; ++i) {
-            const glm::dvec3 off = random.point(glm::dvec3(-1.0), glm::dvec3(1.0));
-            box.extend(glm::vec3(centre + 0.3 * random.unit() * glm::dvec3(1.0) + size * off));
-        }
-        boxes.push_back(box);
-    }
-    return boxes;
 }
 
 Boxes same(std::size_t count, const Bounds& box) {
@@ -162,10 +120,6 @@ bool same_tree(const Bvh& a, const Bvh& b) {
                           return m.bounds.min == n.bounds.min && m.bounds.max == n.bounds.max &&
                                  m.first == n.first && m.count == n.count;
                       });
-}
-
-Bvh build_first(std::size_t count, const BoxSource& boxes, const BvhOptions& options) {
-    return BinaryForm::of(build_bvh_fast(count, boxes, options));
 }
 
 struct Builder {
@@ -437,56 +391,6 @@ TEST(BvhRefit, CanBeStopped) {
     std::stop_source stop;
     stop.request_stop();
     EXPECT_THROW(refit(bvh, source_of(boxes), 2, stop.get_token()), Cancelled);
-}
-
-struct CostCase {
-    Boxes boxes;
-    double before;  // cost of the tree of the builder that this one replaced
-};
-
-std::vector<CostCase> cost_cases() {
-    return {{scattered(100, 20000, 0.3), 530.708},  {scattered(101, 20000, 0.05), 93.538},
-            {scattered(102, 20000, 0.005), 60.450}, {clustered(103, 3000), 14.672},
-            {clustered(104, 20000), 69.199},        {clustered(105, 60000), 185.906}};
-}
-
-TEST(BvhCost, IsWhatFullBinningGives) {
-    for (const CostCase& c : cost_cases()) {
-        EXPECT_LT(sah_cost(build_bvh(c.boxes, 1, {}), {}), 1.025 * c.before);
-    }
-}
-
-TEST(BvhCost, OfTheFirstTreeIsNotMuchMore) {
-    for (const CostCase& c : cost_cases()) {
-        const Bvh bvh = build_first(c.boxes.size(), source_of(c.boxes), {});
-        EXPECT_LT(sah_cost(bvh, {}), 1.15 * c.before);
-    }
-}
-
-TEST(BvhCost, IsLessWithALookAtEveryLeaf) {
-    for (const CostCase& c : cost_cases()) {
-        const auto cost = [&](const LeafCosts& costs) {
-            const Bvh bvh = build_bvh(c.boxes.size(), source_of(c.boxes),
-                                      {.costs = costs, .threads = 1, .stop = {}});
-            return sah_cost(bvh, kWideLeaves);
-        };
-        EXPECT_LE(cost(kWideLeaves), cost(kWideSurfaceLeaves));
-        EXPECT_LE(cost(kWideLeaves), 1.05 * cost({}));
-    }
-}
-
-// Two unit cubes, two apart: half areas of 3 each, and of 9 for the root, which is 4 x 1 x 1.
-TEST(BvhCost, IsTheSumOverNodes) {
-    Bvh bvh;
-    bvh.indices = {0, 1, 2, 3, 4, 5};
-    bvh.nodes.resize(3);
-    bvh.nodes[0] = {{glm::vec3(0.0f), glm::vec3(4.0f, 1.0f, 1.0f)}, 1, 0};
-    bvh.nodes[1] = {{glm::vec3(0.0f), glm::vec3(1.0f)}, 0, 1};
-    bvh.nodes[2] = {{glm::vec3(3.0f, 0.0f, 0.0f), glm::vec3(4.0f, 1.0f, 1.0f)}, 1, 5};
-    EXPECT_NEAR(sah_cost(bvh, {.node = 2.0f, .block = 3.0f, .block_size = 1}),
-                2.0 + 3.0 * (3.0 * 1.0 + 3.0 * 5.0) / 9.0, 1e-6);
-    EXPECT_NEAR(sah_cost(bvh, {.node = 2.0f, .block = 3.0f, .block_size = 4}),
-                2.0 + 3.0 * (3.0 * 1.0 + 3.0 * 2.0) / 9.0, 1e-6);
 }
 
 }  // namespace

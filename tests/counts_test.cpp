@@ -225,48 +225,5 @@ TEST(Chance, AnotherSeedIsAnotherNoise) {
     }
 }
 
-// --- filters ------------------------------------------------------------------------------------
-
-// A wall that glows from 0 at the left to 1 at the right, seen in true size: every filter has the
-// same weight on both sides of a pixel's centre, so a ramp stays a ramp.
-TEST(Filters, KeepARamp) {
-    constexpr int kTexels = 256;
-    std::vector<glm::u8vec4> texels;
-    for (int i = 0; i < kTexels; ++i)
-        texels.emplace_back(glm::u8vec3(static_cast<std::uint8_t>(i)), 255);
-    Scene scene = dark_scene();
-    Texture ramp;
-    ramp.source =
-        ImageTexture{make_texture_pixels(1, kTexels, std::move(texels), TexelCoding::linear), ""};
-    Material glowing = glowing_material(glm::vec3(1.0f));
-    glowing.map(MapSlot::emissive).texture = add_texture(scene, std::move(ramp));
-    place(scene, Rectangle{{-10, -10, 0}, {20, 0, 0}, {0, 20, 0}}, add_material(scene, glowing));
-    const auto accel = std::make_shared<const Accel>(accel_of(std::move(scene)));
-    Camera camera;
-    camera.projection = Projection::orthographic;
-    camera.height = 20.0;
-    constexpr int kColumns = 20;
-    const ImageSize size{kColumns, kColumns};
-    for (const PixelFilter filter :
-         {PixelFilter::box, PixelFilter::tent, PixelFilter::gaussian, PixelFilter::mitchell}) {
-        RenderSettings settings = sampled(Sampling::stratified);
-        settings.samples = 32;
-        settings.filter = filter;
-        const Image image = render(accel, camera, size, settings).image;
-        for (int col = 3; col < kColumns - 3; ++col) {
-            // Texel i is i / 255, at (i + 0.5) / 256 of the width.
-            const double wanted = ((col + 0.5) / kColumns * kTexels - 0.5) / 255.0;
-            double mean = 0.0;
-            for (int row = 3; row < kColumns - 3; ++row) {
-                const auto got = static_cast<double>(image.colour[size.index({row, col})].x);
-                // Where the filter is negative its samples are few: a tenth of a step of noise.
-                EXPECT_NEAR(got, wanted, 5e-3) << static_cast<int>(filter) << " column " << col;
-                mean += got / (kColumns - 6);
-            }
-            EXPECT_NEAR(mean, wanted, 5e-4) << static_cast<int>(filter) << " column " << col;
-        }
-    }
-}
-
 }  // namespace
 }  // namespace raypick
