@@ -72,7 +72,7 @@ public:
             std::size_t count = 0;
             for (std::size_t i = 0; i < kSome && mask != 0; ++i, mask &= mask - 1) {
                 const auto ray = static_cast<std::size_t>(std::countr_zero(mask));
-                judge_patch_of_ray(space.rays, search_.limits, ray, triangles, patch.triangles,
+                judge_patch_of_ray(space, search_.limits, ray, triangles, patch.triangles,
                                    searched.shown, verdicts[count]);
                 met[count] = ray;
                 count += verdicts[count].may != 0 ? 1u : 0u;

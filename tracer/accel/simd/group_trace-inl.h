@@ -315,11 +315,11 @@ private:
         std::uint32_t left = 0;
         for (std::size_t i = 0; i < patch.triangles; i += kTrianglesAtOnce)
             left |= set_triangles(space, patch, i, triangles) << i;
-        if (!space.one_origin && !space.course.backwards() && better_ray_by_ray(patch, mask)) {
+        left &= (1u << patch.triangles) - 1u;
+        if (!space.course.backwards() && better_ray_by_ray(patch, left, mask)) {
             settle_.judge_patch(searched, space, triangles, patch, mask);
             return;
         }
-        left &= (1u << patch.triangles) - 1u;
         for (; left != 0; left &= left - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(left));
             judge_all(searched.object, space, searched.shown, GroupTriangle{triangles, patch, i},

@@ -21,7 +21,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // Where a vector of rays has many gaps and a patch has few, this takes fewer lanes. The other way
 // is quicker for as many, and vectors of sixteen rays take no longer than two of eight triangles.
-inline bool better_ray_by_ray(const TrianglePatch& patch, RayMask mask) {
+// `left` are the triangles that the other way would have to look at.
+inline bool better_ray_by_ray(const TrianglePatch& patch, std::uint32_t left, RayMask mask) {
     std::size_t vectors = 0;
     each_vector(mask, [&](std::size_t, RayMask) HWY_ATTR { ++vectors; });
     const std::size_t triangles = patch.triangles;
@@ -29,7 +30,8 @@ inline bool better_ray_by_ray(const TrianglePatch& patch, RayMask mask) {
         (triangles + kTrianglesAtOnce - 1) / kTrianglesAtOnce * kTrianglesAtOnce;
     const auto rays = static_cast<std::size_t>(std::popcount(mask));
     constexpr std::size_t kHalves = kAtOnce > 8 ? 4 : 3;
-    return kHalves * rays * padded < 2 * triangles * vectors * kAtOnce;
+    return kHalves * rays * padded <
+           2 * static_cast<std::size_t>(std::popcount(left)) * vectors * kAtOnce;
 }
 
 static_assert(TrianglePatch::kMostTriangles <= RayVerdict::kMost);
@@ -55,15 +57,25 @@ HWY_INLINE TriangleFloats dots(const GroupTriangles::Vectors& v, std::size_t fir
     return hn::MulAdd(load(0), x, hn::MulAdd(load(1), y, hn::Mul(load(2), z)));
 }
 
-// As of several origins, see there.
-HWY_INLINE EdgeFunctions<TriangleFloats> edge_functions_of_ray(const GroupRays& rays,
+// As edge_functions() of a vector of rays.
+HWY_INLINE EdgeFunctions<TriangleFloats> edge_functions_of_ray(const GroupSpace& space,
                                                                std::size_t ray,
                                                                const GroupTriangles& all,
                                                                std::size_t first) {
     const Triangles d;
+    const GroupRays& rays = space.rays;
     const auto dx = hn::Set(d, rays.direction[0][ray]);
     const auto dy = hn::Set(d, rays.direction[1][ray]);
     const auto dz = hn::Set(d, rays.direction[2][ray]);
+    EdgeFunctions<TriangleFloats> f;
+    f.slope = dots(all.n, first, dx, dy, dz);
+    if (space.one_origin) {
+        f.u = dots(all.u, first, dx, dy, dz);
+        f.v = dots(all.v, first, dx, dy, dz);
+        f.w = dots(all.w, first, dx, dy, dz);
+        f.height = hn::Load(d, all.height.data() + first);
+        return f;
+    }
     const auto from_origin = [&](std::size_t axis) HWY_ATTR {
         return hn::Sub(hn::Load(d, all.a[axis].data() + first), hn::Set(d, rays.origin[axis][ray]));
     };
@@ -73,8 +85,6 @@ HWY_INLINE EdgeFunctions<TriangleFloats> edge_functions_of_ray(const GroupRays& 
     const auto rx = hn::NegMulAdd(dz, y, hn::Mul(dy, z));
     const auto ry = hn::NegMulAdd(dx, z, hn::Mul(dz, x));
     const auto rz = hn::NegMulAdd(dy, x, hn::Mul(dx, y));
-    EdgeFunctions<TriangleFloats> f;
-    f.slope = dots(all.n, first, dx, dy, dz);
     f.v = hn::Neg(dots(all.edge_c, first, rx, ry, rz));
     f.w = dots(all.edge_b, first, rx, ry, rz);
     f.u = hn::Sub(f.slope, hn::Add(f.v, f.w));
@@ -131,7 +141,7 @@ HWY_INLINE void judge_all_of_patch(std::size_t triangles, RayVerdict& verdict,
 }
 
 // Of rays that are followed forwards.
-HWY_INLINE void judge_patch_of_ray(const GroupRays& rays, const GroupLimits& limits,
+HWY_INLINE void judge_patch_of_ray(const GroupSpace& space, const GroupLimits& limits,
                                    std::size_t ray, const GroupTriangles& all,
                                    std::size_t triangles, const ShownSides& shown,
                                    RayVerdict& verdict) {
@@ -140,7 +150,7 @@ HWY_INLINE void judge_patch_of_ray(const GroupRays& rays, const GroupLimits& lim
         const TriangleErrors errors{hn::Load(d, all.edge_error.data() + first),
                                     hn::Load(d, all.slope_error.data() + first),
                                     hn::Load(d, all.height_error.data() + first)};
-        return judge_functions(edge_functions_of_ray(rays, ray, all, first), errors,
+        return judge_functions(edge_functions_of_ray(space, ray, all, first), errors,
                                limits.t_min[ray], limits.t_far[ray], shown, first, verdict);
     });
 }
