@@ -88,6 +88,28 @@ std::vector<Light> lights() {
     return all;
 }
 
+// All of them, so that end i is point i. Every seventh gets its normal afterwards.
+void add(const std::vector<End>& ends, LitPoints& points) {
+    points.clear();
+    SurfaceRows rows;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        SurfacePoint surface = ends[i].surface;
+        surface.shading_normal = (surface.front_face ? 1.0f : -1.0f) * ends[i].normal;
+        if (i % 7 == 0) surface.shading_normal = {0.6f, 0.0f, 0.8f};
+        Hit hit;
+        hit.front_face = surface.front_face;
+        rows.put(rows.add({glm::vec3(0.0f), ends[i].incoming}, hit), surface);
+        if (!rows.full() && i + 1 != ends.size()) continue;
+        const std::size_t first = points.add(rows);
+        for (std::size_t k = first; k < first + rows.count; ++k) {
+            points.set_ray(k, static_cast<std::uint32_t>(3 * k));
+            points.set_material(k, ends[k].material, ends[k].own);
+            if (k % 7 == 0) points.set_normal(k, ends[k].normal);
+        }
+        rows.clear();
+    }
+}
+
 void shine(const PreparedLight& light, LitPoints& points) {
     if (LitPoints::at_once(light)) return points.shine(light);
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -132,19 +154,21 @@ void expect_same_rays(std::span<const Ray> got, std::span<const Ray> wanted) {
 
 void compare(LitPoints& points, const std::vector<End>& ends, bool shadows) {
     std::vector<glm::vec3> wanted;
-    points.clear();
+    add(ends, points);
+    const auto is_left_out = [](std::size_t i) { return i % 11 == 3; };
     for (std::size_t i = 0; i < ends.size(); ++i) {
-        points.add(static_cast<std::uint32_t>(3 * i), ends[i].point(), ends[i].own);
         wanted.push_back(ends[i].own);
+        if (is_left_out(i)) points.leave_out(i);
     }
     points.leave_surfaces();
-    std::vector<Ray> rays(ends.size());
-    std::vector<std::uint32_t> of(ends.size());
+    std::vector<Ray> rays(points.size());
+    std::vector<std::uint32_t> of(points.size());
     for (const Light& light : lights()) {
         const PreparedLight source = prepared(light);
         OneByOne one_by_one(shadows);
-        for (std::size_t i = 0; i < ends.size(); ++i)
-            wanted[i] += one_by_one.added(ends[i], source);
+        for (std::size_t i = 0; i < ends.size(); ++i) {
+            if (!is_left_out(i)) wanted[i] += one_by_one.added(ends[i], source);
+        }
         shine(source, points);
         points.face_light(shadows);
         const std::size_t taken = points.take_shadow_rays(rays, of);
@@ -155,7 +179,9 @@ void compare(LitPoints& points, const std::vector<End>& ends, bool shadows) {
         }
         points.gather();
     }
-    for (std::size_t i = 0; i < ends.size(); ++i) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        ASSERT_EQ(points.holds(i), i < ends.size() && !is_left_out(i)) << i;
+        if (!points.holds(i)) continue;
         EXPECT_EQ(points.ray(i), 3 * i);
         EXPECT_TRUE(same_bits(points.colour(i), wanted[i] * ends[i].material.opacity)) << i;
     }
@@ -186,7 +212,9 @@ TEST_P(LitPointsBy, MirrorAsBranchesDo) {
             ends[i].surface.geometric_normal = ends[i].normal = {0.0f, 1.0f, 0.0f};
             ends[i].incoming = {1.0f, 0.0f, 0.0f};
         }
-        points.add(static_cast<std::uint32_t>(i), ends[i].point(), ends[i].own);
+    }
+    add(ends, points);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
         if (i / 16 % 3 != 0) points.want_mirrored(i);
     }
     points.mirror();
@@ -204,6 +232,34 @@ TEST_P(LitPointsBy, MirrorAsBranchesDo) {
 }
 
 RAYPICK_ON_EACH_INSTRUCTION_SET(LitPointsBy);
+
+// One material for a whole block, after blocks of others.
+TEST(LitPoints, TakeOneMaterialForAll) {
+    const PreparedLight light = prepared(lights().front());
+    const std::vector<End> others = random_ends(16);
+    for (const std::size_t of : {1u, 3u, 8u}) {  // shiny and not, by either model, see-through
+        std::vector<End> ends = random_ends(13);
+        for (End& end : ends) {
+            end.material = others[of].material;
+            end.own = others[of].own;
+        }
+        LitPoints one_by_one;
+        LitPoints all;
+        for (LitPoints* points : {&one_by_one, &all}) {
+            add(ends, *points);
+            if (points == &all) {
+                for (std::size_t i = 0; i < ends.size(); ++i)
+                    points->set_material(i, others[i].material, others[i].own);
+                points->set_materials(0, ends[0].material, ends[0].own);
+            }
+            shine(light, *points);
+            points->face_light(false);
+            points->gather();
+        }
+        for (std::size_t i = 0; i < ends.size(); ++i)
+            EXPECT_TRUE(same_bits(all.colour(i), one_by_one.colour(i))) << of << " " << i;
+    }
+}
 
 }  // namespace
 }  // namespace raypick

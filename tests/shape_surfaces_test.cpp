@@ -10,9 +10,8 @@
 namespace raypick {
 namespace {
 
-// A set of spheres and single ones, some inside of others, and rectangles, some of them smaller
-// than their rims where `away` takes all far from the origin.
-Scene shapes(double scale, const glm::dvec3& away) {
+// A set of spheres and single ones, some inside of others.
+Scene spheres(double scale, const glm::dvec3& away) {
     Scene scene;
     Random random(3);
     std::vector<glm::vec4> set;
@@ -23,6 +22,13 @@ Scene shapes(double scale, const glm::dvec3& away) {
     place(scene, SphereSetInstance{add_sphere_set(scene, make_sphere_set("set", std::move(set)))});
     for (int i = 0; i < 6; ++i)
         place(scene, Sphere{away + scale * 2.5 * random.direction(), scale * 0.3});
+    return scene;
+}
+
+// Some of them smaller than their rims where `away` takes all far from the origin.
+Scene rectangles(double scale, const glm::dvec3& away) {
+    Scene scene;
+    Random random(5);
     for (int i = 0; i < 20; ++i) {
         const double side = scale * (i % 2 == 0 ? 2.0 : 0.3);
         place(scene, Rectangle{away + scale * 2.0 * random.direction(), side * random.direction(),
@@ -31,28 +37,36 @@ Scene shapes(double scale, const glm::dvec3& away) {
     return scene;
 }
 
-std::size_t compare(const Accel& accel, ShapeSurfaces& surfaces, std::size_t count) {
-    surfaces.clear();
-    return compare_surfaces(
+// Of the hits on shapes of this kind.
+std::size_t compare(const Accel& accel, ShapeSurfaces::Kind kind, std::size_t count) {
+    ShapeSurfaces surfaces;
+    const Compared compared = compare_surfaces(
         accel, count,
-        [&](const HitObject& at, const Ray& ray, const Hit& hit, SurfacePoint& surface) {
-            const ShapeSurfaces::Kind kind = ShapeSurfaces::kind(at);
-            EXPECT_NE(kind, ShapeSurfaces::Kind::other);
-            surfaces.add(kind, accel.scene(), at, ray, hit, surface);
+        [&](std::size_t lane, const HitObject& at, const Hit& hit) {
+            EXPECT_EQ(ShapeSurfaces::kind(at), kind);
+            surfaces.add(lane, accel.scene(), at.object.shape, hit.primitive);
         },
-        [&] { surfaces.find(); });
+        [&](SurfaceRows& rows) {
+            if (kind == ShapeSurfaces::Kind::sphere) surfaces.find_spheres(rows);
+            if (kind == ShapeSurfaces::Kind::rectangle) surfaces.find_rectangles(rows);
+            return 0u;
+        });
+    return compared.same;
 }
 
 class ShapeSurfacesBy : public OnInstructionSet {};
 
 TEST_P(ShapeSurfacesBy, AreThoseOfSurfacePointToTheBit) {
-    ShapeSurfaces surfaces;
     for (const double scale : {1e-4, 1.0, 1e5}) {
         for (const glm::dvec3& away : {glm::dvec3(0.0), scale * glm::dvec3(3e4, -2e4, 1e4)}) {
-            const Accel accel = accel_of(shapes(scale, away));
-            EXPECT_GT(compare(accel, surfaces, 4000), 1500u);
-            for (const std::size_t count : {0u, 1u, 2u, 3u, 7u, 17u})
-                compare(accel, surfaces, count);
+            const Accel round = accel_of(spheres(scale, away));
+            const Accel flat = accel_of(rectangles(scale, away));
+            EXPECT_GT(compare(round, ShapeSurfaces::Kind::sphere, 3000), 1200u);
+            EXPECT_GT(compare(flat, ShapeSurfaces::Kind::rectangle, 3000), 400u);
+            for (const std::size_t count : {0u, 1u, 2u, 3u, 7u, 17u}) {
+                compare(round, ShapeSurfaces::Kind::sphere, count);
+                compare(flat, ShapeSurfaces::Kind::rectangle, count);
+            }
         }
     }
 }

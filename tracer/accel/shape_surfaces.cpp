@@ -1,9 +1,6 @@
 #include "tracer/accel/shape_surfaces.h"
 
-#include "tracer/accel/lane_rows.h"
-
 #include <limits>
-#include <span>
 #include <variant>
 
 #undef HWY_TARGET_INCLUDE
@@ -35,18 +32,24 @@ HWY_INLINE DoubleVector clamp(DoubleVector x, DoubleVector low, DoubleVector hig
     return hn::IfThenElse(hn::Lt(x, low), low, smaller(x, high));
 }
 
-// As many hits of a block as a vector holds, from lane i on.
+// As many hits as a vector holds, from lane i on.
 class Lanes {
 public:
-    using In = ShapeSurfaces;
+    HWY_INLINE Lanes(const ShapeSurfaces::Inputs& in, SurfaceRows& rows, std::size_t i)
+        : in_(in), rows_(rows), i_(i) {}
 
-    HWY_INLINE Lanes(ShapeSurfaces::Block& block, std::size_t i) : block_(block), i_(i) {}
-
-    HWY_INLINE DoubleVector load(std::size_t row) const {
-        return hn::LoadU(Doubles(), &block_.in[row * ShapeSurfaces::kLanes + i_]);
+    HWY_INLINE DoubleVector of_shape(std::size_t row) const {
+        return hn::LoadU(Doubles(), &in_.row[row * SurfaceRows::kLanes + i_]);
     }
-    HWY_INLINE DoubleVector3 load3(std::size_t first) const {
-        return {load(first), load(first + 1), load(first + 2)};
+    HWY_INLINE DoubleVector3 of_shape3(std::size_t first) const {
+        return {of_shape(first), of_shape(first + 1), of_shape(first + 2)};
+    }
+    HWY_INLINE DoubleVector of_ray(std::size_t row) const {
+        const hn::Rebind<float, Doubles> f;
+        return hn::PromoteTo(Doubles(), hn::LoadU(f, &rows_.row[row * SurfaceRows::kLanes + i_]));
+    }
+    HWY_INLINE DoubleVector3 of_ray3(std::size_t first) const {
+        return {of_ray(first), of_ray(first + 1), of_ray(first + 2)};
     }
 
     // `magnitude` as in LocalPoint; `normal` is unit.
@@ -57,10 +60,11 @@ public:
             return hn::Add(hn::Mul(along, number(0x1p-24)),
                            hn::Mul(hn::Add(along, magnitude), number(0x1p-47)));
         };
-        store3(In::kPosition, position, -0.0f);
-        store3(In::kError, {bound(reach.x), bound(reach.y), bound(reach.z)},
+        store3(SurfaceRows::kPosition, position, -0.0f);
+        store3(SurfaceRows::kError, {bound(reach.x), bound(reach.y), bound(reach.z)},
                std::numeric_limits<float>::min());
-        store3(In::kNormal, normal, -0.0f);
+        store3(SurfaceRows::kGeometric, normal, -0.0f);
+        store3(SurfaceRows::kShading, normal, -0.0f);
     }
 
 private:
@@ -68,14 +72,15 @@ private:
         const hn::Rebind<float, Doubles> f;
         const auto put = [&](std::size_t row, DoubleVector v) HWY_ATTR {
             hn::StoreU(hn::Add(hn::DemoteTo(f, v), hn::Set(f, more)), f,
-                       &block_.out[row * ShapeSurfaces::kLanes + i_]);
+                       &rows_.row[row * SurfaceRows::kLanes + i_]);
         };
         put(first, a.x);
         put(first + 1, a.y);
         put(first + 2, a.z);
     }
 
-    ShapeSurfaces::Block& block_;
+    const ShapeSurfaces::Inputs& in_;
+    SurfaceRows& rows_;
     std::size_t i_;
 };
 
@@ -93,11 +98,12 @@ HWY_INLINE DoubleVector exact_t(const DoubleVector3& f, const DoubleVector3& dir
 
 HWY_INLINE void find_sphere(const Lanes& lanes) {
     using In = ShapeSurfaces;
-    const DoubleVector3 origin = lanes.load3(In::kOrigin);
-    const DoubleVector3 direction = lanes.load3(In::kDirection);
-    const DoubleVector3 centre = lanes.load3(In::kCentre);
-    const DoubleVector radius = lanes.load(In::kRadius);
-    const DoubleVector t = exact_t(minus(origin, centre), direction, radius, lanes.load(In::kT));
+    const DoubleVector3 origin = lanes.of_ray3(SurfaceRows::kOrigin);
+    const DoubleVector3 direction = lanes.of_ray3(SurfaceRows::kDirection);
+    const DoubleVector3 centre = lanes.of_shape3(In::kCentre);
+    const DoubleVector radius = lanes.of_shape(In::kRadius);
+    const DoubleVector t =
+        exact_t(minus(origin, centre), direction, radius, lanes.of_ray(SurfaceRows::kT));
     const DoubleVector3 n = normalize(minus(plus(origin, times(t, direction)), centre));
     lanes.store(plus(centre, times(radius, n)), hn::Add(largest(centre), radius), normalize(n));
 }
@@ -113,11 +119,11 @@ HWY_INLINE void find_rectangle(const Lanes& lanes) {
     using In = ShapeSurfaces;
     const DoubleVector zero = number(0.0);
     const DoubleVector one = number(1.0);
-    const DoubleVector3 origin = lanes.load3(In::kOrigin);
-    const DoubleVector3 direction = lanes.load3(In::kDirection);
-    const DoubleVector3 corner = lanes.load3(In::kCorner);
-    const DoubleVector3 u = lanes.load3(In::kEdgeU);
-    const DoubleVector3 v = lanes.load3(In::kEdgeV);
+    const DoubleVector3 origin = lanes.of_ray3(SurfaceRows::kOrigin);
+    const DoubleVector3 direction = lanes.of_ray3(SurfaceRows::kDirection);
+    const DoubleVector3 corner = lanes.of_shape3(In::kCorner);
+    const DoubleVector3 u = lanes.of_shape3(In::kEdgeU);
+    const DoubleVector3 v = lanes.of_shape3(In::kEdgeV);
     const DoubleVector3 normal = cross(u, v);
 
     // meet_within of flat_shapes.cpp.
@@ -129,7 +135,8 @@ HWY_INLINE void find_rectangle(const Lanes& lanes) {
         return hn::IfThenElseZero(hn::IsFinite(t), clamp(whole, zero, one));
     };
 
-    const DoubleVector away = largest(plus(origin, times(lanes.load(In::kT), direction)));
+    const DoubleVector away =
+        largest(plus(origin, times(lanes.of_ray(SurfaceRows::kT), direction)));
     const DoubleVector rim = hn::Mul(
         number(64.0), hn::Add(hn::Mul(away, number(0x1p-24)), hn::Mul(away, number(0x1p-47))));
     const DoubleVector area = hn::Sqrt(squared_area);
@@ -143,18 +150,14 @@ HWY_INLINE void find_rectangle(const Lanes& lanes) {
 
 }  // namespace
 
-void find_spheres(std::span<ShapeSurfaces::Block> blocks) {
-    for (ShapeSurfaces::Block& block : blocks) {
-        for (std::size_t i = 0; i < ShapeSurfaces::kLanes; i += hn::Lanes(Doubles()))
-            find_sphere(Lanes(block, i));
-    }
+void find_spheres(const ShapeSurfaces::Inputs& in, SurfaceRows& rows) {
+    for (std::size_t i = 0; i < rows.count; i += hn::Lanes(Doubles()))
+        find_sphere(Lanes(in, rows, i));
 }
 
-void find_rectangles(std::span<ShapeSurfaces::Block> blocks) {
-    for (ShapeSurfaces::Block& block : blocks) {
-        for (std::size_t i = 0; i < ShapeSurfaces::kLanes; i += hn::Lanes(Doubles()))
-            find_rectangle(Lanes(block, i));
-    }
+void find_rectangles(const ShapeSurfaces::Inputs& in, SurfaceRows& rows) {
+    for (std::size_t i = 0; i < rows.count; i += hn::Lanes(Doubles()))
+        find_rectangle(Lanes(in, rows, i));
 }
 
 }  // namespace raypick::HWY_NAMESPACE
@@ -167,36 +170,6 @@ namespace raypick {
 HWY_EXPORT(find_spheres);
 HWY_EXPORT(find_rectangles);
 
-namespace {
-
-// Of the blocks that hold `count` hits.
-std::span<ShapeSurfaces::Block> used(std::vector<ShapeSurfaces::Block>& blocks, std::size_t count) {
-    return std::span(blocks).first((count + ShapeSurfaces::kLanes - 1) / ShapeSurfaces::kLanes);
-}
-
-void put(double* in, std::size_t row, const glm::dvec3& v) {
-    put_vector<ShapeSurfaces::kLanes>(in, row, v);
-}
-
-void put_shape(double* in, const Scene& scene, const Shape& shape, std::uint32_t primitive) {
-    using In = ShapeSurfaces;
-    if (const auto* set = std::get_if<SphereSetInstance>(&shape)) {
-        const glm::vec4& sphere = scene.sphere_sets[set->set].spheres[primitive];
-        put(in, In::kCentre, glm::dvec3(sphere));
-        in[In::kRadius * In::kLanes] = static_cast<double>(sphere.w);
-    } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-        put(in, In::kCentre, sphere->centre);
-        in[In::kRadius * In::kLanes] = sphere->radius;
-    } else {
-        const auto& rectangle = std::get<Rectangle>(shape);
-        put(in, In::kCorner, rectangle.corner);
-        put(in, In::kEdgeU, rectangle.edge_u);
-        put(in, In::kEdgeV, rectangle.edge_v);
-    }
-}
-
-}  // namespace
-
 ShapeSurfaces::Kind ShapeSurfaces::kind(const HitObject& at) {
     const Shape& shape = at.object.shape;
     if (at.textured || !at.object_from_world.is_identity()) return Kind::other;
@@ -206,44 +179,31 @@ ShapeSurfaces::Kind ShapeSurfaces::kind(const HitObject& at) {
     return spheres ? Kind::sphere : Kind::other;
 }
 
-void ShapeSurfaces::add(Kind kind, const Scene& scene, const HitObject& at, const Ray& ray,
-                        const Hit& hit, SurfacePoint& result) {
-    Hits& hits = kind == Kind::sphere ? spheres_ : rectangles_;
-    if (hits.count == hits.wanted.size()) {
-        hits.blocks.resize(2 * hits.blocks.size() + 1);
-        hits.wanted.resize(kLanes * hits.blocks.size());
+void ShapeSurfaces::add(std::size_t lane, const Scene& scene, const Shape& shape,
+                        std::uint32_t primitive) {
+    double* const in = &in_.row[lane];
+    const auto put = [in](std::size_t row, const glm::dvec3& v) { put_vector<kLanes>(in, row, v); };
+    if (const auto* set = std::get_if<SphereSetInstance>(&shape)) {
+        const glm::vec4& sphere = scene.sphere_sets[set->set].spheres[primitive];
+        put(kCentre, glm::dvec3(sphere));
+        in[kRadius * kLanes] = static_cast<double>(sphere.w);
+    } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+        put(kCentre, sphere->centre);
+        in[kRadius * kLanes] = sphere->radius;
+    } else {
+        const auto& rectangle = std::get<Rectangle>(shape);
+        put(kCorner, rectangle.corner);
+        put(kEdgeU, rectangle.edge_u);
+        put(kEdgeV, rectangle.edge_v);
     }
-    double* const in = &hits.blocks[hits.count / kLanes].in[hits.count % kLanes];
-    put(in, kOrigin, glm::dvec3(ray.origin));
-    put(in, kDirection, glm::dvec3(ray.direction));
-    in[kT * kLanes] = static_cast<double>(hit.t);
-    put_shape(in, scene, at.object.shape, hit.primitive);
-    Wanted& wanted = hits.wanted[hits.count++];
-    wanted.material = at.material;
-    wanted.hit = &hit;
-    wanted.result = &result;
 }
 
-void ShapeSurfaces::find() {
-    HWY_DYNAMIC_DISPATCH(find_spheres)(used(spheres_.blocks, spheres_.count));
-    HWY_DYNAMIC_DISPATCH(find_rectangles)(used(rectangles_.blocks, rectangles_.count));
-    take(spheres_);
-    take(rectangles_);
+void ShapeSurfaces::find_spheres(SurfaceRows& rows) const {
+    HWY_DYNAMIC_DISPATCH(find_spheres)(in_, rows);
 }
 
-void ShapeSurfaces::take(const Hits& hits) {
-    for (std::size_t i = 0; i < hits.count; ++i)
-        take(hits.wanted[i], hits.blocks[i / kLanes], i % kLanes);
-}
-
-void ShapeSurfaces::take(const Wanted& wanted, const Block& block, std::size_t lane) {
-    const float* const out = &block.out[lane];
-    SurfacePoint& surface = *wanted.result;
-    surface.position = vector_at<kLanes>(out, kPosition);
-    surface.position_error = vector_at<kLanes>(out, kError);
-    surface.geometric_normal = vector_at<kLanes>(out, kNormal);
-    surface.shading_normal = vector_at<kLanes>(out, kNormal);
-    set_untextured(*wanted.hit, wanted.material, surface);
+void ShapeSurfaces::find_rectangles(SurfaceRows& rows) const {
+    HWY_DYNAMIC_DISPATCH(find_rectangles)(in_, rows);
 }
 
 }  // namespace raypick

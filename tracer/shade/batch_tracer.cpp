@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <limits>
 #include <numeric>
@@ -133,23 +134,33 @@ void BatchTracer::find_points(const Step& step) {
         if (step.job.stop.stop_requested()) return;
         intersect_groups(step);
         if (step.depth == 1 && hidden == 0) note_first_hits(step.job);
-        found_.resize(rays_.size());
-        find_surfaces(step.job.scene, rays_, hits_, found_, surfaces_);
-        std::size_t left = 0;
+        hidden_.clear();
+        arrivals_.begin(step.job.scene, rays_, hits_);
         for (std::size_t i = 0; i < at_work_.size(); ++i) {
             if (!hits_[i].valid()) {
                 see_sky(step, step.at.rays[at_work_[i]], rays_[i]);
-                continue;
+            } else if (const Arrivals::Block* full = arrivals_.add(i)) {
+                arrive(step, hidden, *full);
             }
-            if (!arrive(step, hidden, i)) continue;
-            at_work_[left] = at_work_[i];
-            directions_[left] = directions_[i];
-            rays_[left++] = rays_[i];
         }
-        at_work_.resize(left);
-        directions_.resize(left);
-        rays_.resize(left);
+        while (const Arrivals::Block* rest = arrivals_.rest())
+            arrive(step, hidden, *rest);
+        keep_hidden();
     }
+}
+
+// Of the rays at work those that go on.
+void BatchTracer::keep_hidden() {
+    std::sort(hidden_.begin(), hidden_.end());  // those that travel together side by side again
+    for (std::size_t k = 0; k < hidden_.size(); ++k) {
+        const std::uint32_t i = hidden_[k];
+        at_work_[k] = at_work_[i];
+        directions_[k] = directions_[i];
+        rays_[k] = rays_[i];
+    }
+    at_work_.resize(hidden_.size());
+    directions_.resize(hidden_.size());
+    rays_.resize(hidden_.size());
 }
 
 // One query for each group of rays that go the same way.
@@ -177,38 +188,84 @@ void BatchTracer::note_first_hits(const Job& job) {
     }
 }
 
-// What ray i of those at work, which hits something, brings back by itself. True: it goes on, since
-// the surface is hidden.
-bool BatchTracer::arrive(const Step& step, int hidden, std::size_t i) {
+// What the rays of a block bring back by themselves.
+void BatchTracer::arrive(const Step& step, int hidden, const Arrivals::Block& block) {
+    const std::size_t first = points_.add(block.rows);
+    const auto path_of = [&](std::size_t lane) -> PathRay& {
+        return step.at.rays[at_work_[block.hit[lane]]];
+    };
+    bool alike = true;  // all at work on the same part, with nothing that wants a closer look
+    std::uint32_t others = 0;
+    for (std::size_t lane = 0; lane < block.rows.count; ++lane) {
+        points_.set_ray(first + lane, at_work_[block.hit[lane]]);
+        const bool simple =
+            arrivals_.part(block, lane).simple && path_of(lane).interior == kNoInterior;
+        if (!simple) others |= 1u << lane;
+        alike = alike && simple && block.part[lane] == block.part[0];
+    }
+    if (alike) {
+        const PreparedMaterial& material = *arrivals_.part(block, 0).prepared;
+        points_.set_materials(first, material.plain, material.own);
+    }
+    for (std::size_t lane = 0; lane < block.rows.count; ++lane) {
+        if ((others >> lane & 1u) != 0) {
+            arrivals_.set_found(block, lane, found_[lane]);
+            continue;
+        }
+        const PreparedMaterial& material = *arrivals_.part(block, lane).prepared;
+        if (!alike) points_.set_material(first + lane, material.plain, material.own);
+        arrive_simply(step, path_of(lane), material, block.hit[lane], first + lane);
+    }
+    for (; others != 0; others &= others - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(others));
+        arrive(step, hidden, found_[lane], block.hit[lane], first + lane);
+    }
+}
+
+// Ray i of those at work, at the end of a path outside of everything, on a KnownPart that is
+// simple.
+void BatchTracer::arrive_simply(const Step& step, PathRay& path, const PreparedMaterial& material,
+                                std::size_t i, std::size_t point) {
+    path.cone.width = path.cone.at(hits_[i].t);
+    if (step.depth == 1) step.job.results[path.parent].normal = points_.normal(point);
+    if (material.branches && step.depth < step.job.scene.settings.depth) {
+        want_mirrored(step, point, material);
+    }
+}
+
+void BatchTracer::arrive(const Step& step, int hidden, const FoundHit& found, std::size_t i,
+                         std::size_t point) {
     PathRay& path = step.at.rays[at_work_[i]];
     const ShadeScene& scene = step.job.scene;
     const Hit& hit = hits_[i];
     const Ray& ray = rays_[i];
-    const FoundHit& found = found_[i];
     const Boundary boundary = boundary_at(scene, found, hit, step.at.interior_of(path), crossing_);
     if (boundary.medium != kNoMaterial) path.passed *= passed(scene, boundary.medium, hit.t);
     path.cone.width = path.cone.at(hit.t);
     if (!boundary.is_there && hidden < kMostHidden) {
         step.at.put_inside(path, boundary.crossing->after);
         rays_[i] = Ray{offset_origin(found.surface, ray.direction), ray.direction};
-        return true;
+        hidden_.push_back(static_cast<std::uint32_t>(i));
+        points_.leave_out(point);
+        return;
     }
     if (boundary.crossing != nullptr) step.at.put_inside(path, boundary.crossing->before);
     path.weight *= largest(path.passed);
-    const ShadingPoint point =
+    const PreparedMaterial& material = *found.material;
+    const ShadingPoint shading =
         shading_point(scene, found, ray.direction, path.cone.width, &with_maps_);
-    points_.add(
-        at_work_[i], point,
-        found.material->has_maps ? own_light(*scene.scene, point.material) : found.material->own);
-    if (step.depth == 1) step.job.results[path.parent].normal = point.normal;
-    if (!found.material->branches || step.depth >= scene.settings.depth) return false;
-    if (found.material->only_mirrors) {
-        want_mirrored(step, at_work_[i], *found.material);
+    points_.set_material(
+        point, shading.material,
+        material.has_maps ? own_light(*scene.scene, shading.material) : material.own);
+    if (material.has_maps) points_.set_normal(point, shading.normal);
+    if (step.depth == 1) step.job.results[path.parent].normal = shading.normal;
+    if (!material.branches || step.depth >= scene.settings.depth) return;
+    if (material.only_mirrors) {
+        want_mirrored(step, point, material);
     } else {
-        const ShadingPoint in_memory(point);  // lets `point` stay in registers
+        const ShadingPoint in_memory(shading);  // lets `shading` stay in registers
         send_branches(step, at_work_[i], in_memory, boundary);
     }
-    return false;
 }
 
 void BatchTracer::see_sky(const Step& step, PathRay& path, const Ray& ray) {
@@ -244,13 +301,12 @@ void BatchTracer::send_branches(const Step& step, std::uint32_t from, const Shad
     }
 }
 
-// What find_branches would say of the latest point, on a surface that only mirrors.
-void BatchTracer::want_mirrored(const Step& step, std::uint32_t from,
+// What find_branches would say of this point, on a surface that only mirrors.
+void BatchTracer::want_mirrored(const Step& step, std::size_t point,
                                 const PreparedMaterial& material) {
-    const float weight = step.at.rays[from].weight * largest(material.mirrored);
+    const float weight = step.at.rays[points_.ray(point)].weight * largest(material.mirrored);
     const float cutoff = step.job.scene.settings.cutoff;
     if (cutoff != 0.0f && !(weight > cutoff)) return;
-    const std::size_t point = points_.size() - 1;
     points_.want_mirrored(point);
     mirrored_.push_back({&material, static_cast<std::uint32_t>(point), weight});
 }
@@ -285,8 +341,9 @@ void BatchTracer::light_points(const Step& step) {
             light_points_by(step, light, sample);
         }
     }
-    for (std::size_t i = 0; i < points_.size(); ++i)
-        step.at.rays[points_.ray(i)].colour = points_.colour(i);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+        if (points_.holds(i)) step.at.rays[points_.ray(i)].colour = points_.colour(i);
+    }
 }
 
 void BatchTracer::light_points_by(const Step& step, std::size_t light, int sample) {
@@ -305,6 +362,7 @@ void BatchTracer::shine(const Step& step, std::size_t light, int sample) {
         return;
     }
     for (std::size_t i = 0; i < points_.size(); ++i) {
+        if (!points_.holds(i)) continue;
         const std::uint64_t seed = light_seed(scene, step.at.rays[points_.ray(i)].seed, light);
         points_.shine(i, light_sample(source, points_.position(i), sample, seed));
     }

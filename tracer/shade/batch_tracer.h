@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tracer/parallel/large_array.h"
+#include "tracer/shade/arrivals.h"
 #include "tracer/shade/boundary.h"
 #include "tracer/shade/branches.h"
 #include "tracer/shade/eye_ray.h"
@@ -13,6 +14,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -93,14 +95,19 @@ private:
     void follow(const Job& job, int depth);
     void follow_portion(const Step& step, std::span<const std::uint32_t> portion);
     void find_points(const Step& step);
+    void keep_hidden();
     void load_rays(const Step& step, std::span<const std::uint32_t> portion);
     void intersect_groups(const Step& step);
     void note_first_hits(const Job& job);
-    bool arrive(const Step& step, int hidden, std::size_t i);
+    void arrive(const Step& step, int hidden, const Arrivals::Block& block);
+    void arrive_simply(const Step& step, PathRay& path, const PreparedMaterial& material,
+                       std::size_t i, std::size_t point);
+    void arrive(const Step& step, int hidden, const FoundHit& found, std::size_t i,
+                std::size_t point);
     static void see_sky(const Step& step, PathRay& path, const Ray& ray);
     void send_branches(const Step& step, std::uint32_t from, const ShadingPoint& point,
                        const Boundary& boundary);
-    void want_mirrored(const Step& step, std::uint32_t from, const PreparedMaterial& material);
+    void want_mirrored(const Step& step, std::size_t point, const PreparedMaterial& material);
     void send_mirrored(const Step& step);
     void light_points(const Step& step);
     void light_points_by(const Step& step, std::size_t light, int sample);
@@ -116,8 +123,9 @@ private:
     LargeArray<std::uint8_t> directions_;
     LargeArray<Ray> rays_;
     LargeArray<Hit> hits_;
-    LargeArray<FoundHit> found_;
-    SurfaceBatches surfaces_;
+    Arrivals arrivals_;
+    std::array<FoundHit, Arrivals::kLanes> found_;  // of a block
+    std::vector<std::uint32_t> hidden_;             // of those at work: at a hidden surface
     Crossing crossing_;
     Branches branches_;
     SurfaceMaterial with_maps_;  // of the ray that arrives

@@ -3,6 +3,7 @@
 #include "tracer/accel/hit.h"
 #include "tracer/shade/lit_point.h"
 
+#include <algorithm>
 #include <bit>
 #include <limits>
 
@@ -236,6 +237,29 @@ private:
 
 }  // namespace
 
+// set_lit_point, but for the material.
+void take_ends(const SurfaceRows& ends, LitPoints::Block& block) {
+    const Singles d;
+    for (std::size_t i = 0; i < LitPoints::kLanes; i += hn::Lanes(d)) {
+        const Lanes lanes(block, i);
+        const auto front = mask_of(d, ends.front >> i);
+        const auto of_end = [&](std::size_t row) HWY_ATTR {
+            return hn::Load(d, &ends.row[row * SurfaceRows::kLanes + i]);
+        };
+        const auto turned = [&](std::size_t row) HWY_ATTR {
+            const auto outward = of_end(row);
+            return hn::IfThenElse(front, outward, hn::Neg(outward));
+        };
+        for (std::size_t k = 0; k < 3; ++k) {
+            lanes.store(d, LitPoints::kPosition + k, of_end(SurfaceRows::kPosition + k));
+            lanes.store(d, LitPoints::kOutside + k, of_end(SurfaceRows::kError + k));
+            lanes.store(d, LitPoints::kNormal + k, turned(SurfaceRows::kShading + k));
+            lanes.store(d, LitPoints::kGeometric + k, turned(SurfaceRows::kGeometric + k));
+            lanes.store(d, LitPoints::kToEye + k, hn::Neg(of_end(SurfaceRows::kDirection + k)));
+        }
+    }
+}
+
 void mirror(std::span<LitPoints::Block> blocks) {
     for (LitPoints::Block& block : blocks) {
         for (std::size_t i = 0; block.mirrors && i < LitPoints::kLanes; i += hn::Lanes(Singles())) {
@@ -267,6 +291,7 @@ void face_light(std::span<LitPoints::Block> blocks, bool shadows) {
         block.lit = 0;
         for (std::size_t i = 0; i < LitPoints::kLanes; i += hn::Lanes(Singles()))
             block.lit |= facing(Lanes(block, i), shadows) << i;
+        block.lit &= block.used;
     }
 }
 
@@ -285,6 +310,7 @@ HWY_AFTER_NAMESPACE();
 
 namespace raypick {
 
+HWY_EXPORT(take_ends);
 HWY_EXPORT(mirror);
 HWY_EXPORT(leave_surfaces);
 HWY_EXPORT(shine_from_point);
@@ -305,24 +331,22 @@ void put(LitPoints::Block& block, std::size_t lane, const LightSample& light) {
 
 }  // namespace
 
-void LitPoints::add(std::uint32_t ray, const ShadingPoint& point, const glm::vec3& own) {
-    if (count_ == kLanes * blocks_.size()) blocks_.resize(2 * blocks_.size() + 1);
-    Block& block = blocks_[count_ / kLanes];
-    const std::size_t lane = count_ % kLanes;
-    ++count_;
-    if (lane == 0) {
-        block.shiny = block.blinn = block.front = 0;
-        block.mirrors = false;
-    }
-    put(block, lane, kPosition, point.surface.position);
-    put(block, lane, kOutside, point.surface.position_error);
-    put(block, lane, kNormal, point.normal);
-    put(block, lane, kGeometric, point.geometric);
-    put(block, lane, kToEye, -point.incoming);
-    const SurfaceMaterial& material = point.material;
+std::size_t LitPoints::add(const SurfaceRows& ends) {
+    if (count_ == blocks_.size()) blocks_.resize(2 * blocks_.size() + 1);
+    Block& block = blocks_[count_];
+    block.used = (1u << ends.count) - 1u;
+    block.front = ends.front;
+    block.shiny = block.blinn = 0;
+    block.mirrors = false;
+    HWY_DYNAMIC_DISPATCH(take_ends)(ends, block);
+    return kLanes * count_++;
+}
+
+void LitPoints::set_material(std::size_t i, const SurfaceMaterial& material, const glm::vec3& own) {
+    Block& block = blocks_[i / kLanes];
+    const std::size_t lane = i % kLanes;
     put(block, lane, kDiffuse, material.diffuse);
     put(block, lane, kColour, own);
-    block.ray[lane] = ray;
     block.opacity[lane] = material.opacity;
     const auto bit = [lane](bool is) { return (is ? 1u : 0u) << lane; };
     if (material.specular != glm::vec3(0.0f)) {
@@ -331,7 +355,33 @@ void LitPoints::add(std::uint32_t ray, const ShadingPoint& point, const glm::vec
         block.shiny |= bit(true);
     }
     block.blinn |= bit(material.model != LocalModel::phong);
-    block.front |= bit(point.surface.front_face);
+}
+
+void LitPoints::set_materials(std::size_t first, const SurfaceMaterial& material,
+                              const glm::vec3& own) {
+    Block& block = blocks_[first / kLanes];
+    const auto fill = [&block](std::size_t row, float number) {
+        std::fill_n(&block.row[row * kLanes], kLanes, number);
+    };
+    const auto fill3 = [&fill](std::size_t row, const glm::vec3& v) {
+        fill(row, v.x);
+        fill(row + 1, v.y);
+        fill(row + 2, v.z);
+    };
+    fill3(kDiffuse, material.diffuse);
+    fill3(kColour, own);
+    block.opacity.fill(material.opacity);
+    const bool shiny = material.specular != glm::vec3(0.0f);
+    if (shiny) {
+        fill3(kSpecular, material.specular);
+        fill(kShininess, material.shininess);
+    }
+    block.shiny = shiny ? block.used : 0;
+    block.blinn = material.model != LocalModel::phong ? block.used : 0;
+}
+
+void LitPoints::set_normal(std::size_t i, const glm::vec3& normal) {
+    put(blocks_[i / kLanes], i % kLanes, kNormal, normal);
 }
 
 void LitPoints::mirror() {
@@ -367,7 +417,6 @@ void LitPoints::shine(std::size_t i, const LightSample& light) {
 
 void LitPoints::face_light(bool shadows) {
     HWY_DYNAMIC_DISPATCH(face_light)(used(), shadows);
-    if (count_ % kLanes != 0) used().back().lit &= (1u << (count_ % kLanes)) - 1u;
 }
 
 std::size_t LitPoints::take_shadow_rays(std::span<Ray> rays,

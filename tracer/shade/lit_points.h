@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tracer/accel/lane_rows.h"
+#include "tracer/accel/surface_rows.h"
 #include "tracer/geometry/ray.h"
 #include "tracer/shade/boundary.h"
 #include "tracer/shade/light_sample.h"
@@ -23,14 +24,28 @@ namespace raypick {
 class LitPoints {
 public:
     void clear() { count_ = 0; }
-    [[nodiscard]] std::size_t size() const { return count_; }
-    // The end of this ray; `own`: what the surface gives off by itself.
-    void add(std::uint32_t ray, const ShadingPoint& point, const glm::vec3& own);
+    // Adds the ends of these rays, in a block of their own: its first point, lane by lane. Each
+    // wants its number and its material, or to be left out.
+    std::size_t add(const SurfaceRows& ends);
+    // `own`: what the surface gives off by itself.
+    void set_material(std::size_t i, const SurfaceMaterial& material, const glm::vec3& own);
+    // The same for all points of the block that begins with this one.
+    void set_materials(std::size_t first, const SurfaceMaterial& material, const glm::vec3& own);
+    void set_ray(std::size_t i, std::uint32_t ray) { blocks_[i / kLanes].ray[i % kLanes] = ray; }
+    // The shading normal, towards the eye.
+    void set_normal(std::size_t i, const glm::vec3& normal);
+    void leave_out(std::size_t i) { blocks_[i / kLanes].used &= ~(1u << (i % kLanes)); }
 
+    // Points are numbered below this; some numbers are of none.
+    [[nodiscard]] std::size_t size() const { return count_ * kLanes; }
+    [[nodiscard]] bool holds(std::size_t i) const {
+        return (blocks_[i / kLanes].used >> (i % kLanes) & 1u) != 0;
+    }
     [[nodiscard]] std::uint32_t ray(std::size_t i) const {
         return blocks_[i / kLanes].ray[i % kLanes];
     }
     [[nodiscard]] glm::vec3 position(std::size_t i) const { return at(i, kPosition); }
+    [[nodiscard]] glm::vec3 normal(std::size_t i) const { return at(i, kNormal); }
 
     // Works out mirrored rays of all points in blocks of 16 where one is wanted, until the first
     // light shines.
@@ -86,12 +101,13 @@ public:
     static constexpr std::size_t kMirroredOrigin = 28;
     static constexpr std::size_t kRows = 32;
     // Some points side by side.
-    static constexpr std::size_t kLanes = 16;
+    static constexpr std::size_t kLanes = SurfaceRows::kLanes;
     struct Block {
         alignas(64) std::array<float, kRows * kLanes> row{};
         std::array<std::uint32_t, kLanes> ray{};
         std::array<float, kLanes> opacity{};
         // Bits by point.
+        std::uint32_t used = 0;  // there is one
         std::uint32_t lit = 0;
         std::uint32_t shiny = 0;  // with a highlight
         std::uint32_t blinn = 0;  // by Blinn's model
@@ -103,14 +119,10 @@ private:
     [[nodiscard]] glm::vec3 at(std::size_t i, std::size_t first) const {
         return vector_at<kLanes>(&blocks_[i / kLanes].row[i % kLanes], first);
     }
-    [[nodiscard]] std::span<Block> used() {
-        return std::span(blocks_).first((count_ + kLanes - 1) / kLanes);
-    }
-    [[nodiscard]] std::span<const Block> used() const {
-        return std::span(blocks_).first((count_ + kLanes - 1) / kLanes);
-    }
+    [[nodiscard]] std::span<Block> used() { return std::span(blocks_).first(count_); }
+    [[nodiscard]] std::span<const Block> used() const { return std::span(blocks_).first(count_); }
 
-    std::size_t count_ = 0;
+    std::size_t count_ = 0;  // blocks in use
     std::vector<Block> blocks_;
 };
 

@@ -1,5 +1,7 @@
 #include "tracer/shade/shade_scene.h"
 
+#include "tracer/accel/shape_surfaces.h"
+#include "tracer/accel/triangle_surfaces.h"
 #include "tracer/shade/interior.h"
 
 #include <algorithm>
@@ -34,47 +36,17 @@ PreparedMaterial prepared(const Scene& scene, const Material& material,
     return result;
 }
 
-// Some primitives of an object that have one material: rays side by side mostly hit the same.
-struct KnownPart {
-    const Object* object = nullptr;
-    const Transform* object_from_world = nullptr;
-    MaterialId material = kNoMaterial;
-    const PreparedMaterial* prepared = nullptr;
-    std::uint32_t first = 0;  // primitives
-    std::uint32_t last = 0;
-    bool triangles = false;  // of TriangleSurfaces
-    ShapeSurfaces::Kind shape = ShapeSurfaces::Kind::other;
-
-    [[nodiscard]] bool holds(const Hit& hit) const {
-        return object != nullptr && object->id == hit.object && hit.primitive >= first &&
-               hit.primitive <= last;
+SurfaceKind kind_of(const HitObject& at) {
+    if (TriangleSurfaces::takes(at)) return SurfaceKind::triangle;
+    switch (ShapeSurfaces::kind(at)) {
+        case ShapeSurfaces::Kind::sphere:
+            return SurfaceKind::sphere;
+        case ShapeSurfaces::Kind::rectangle:
+            return SurfaceKind::rectangle;
+        case ShapeSurfaces::Kind::other:
+            break;
     }
-    [[nodiscard]] HitObject at() const {
-        return {*object, *object_from_world, material, prepared->has_maps};
-    }
-};
-
-KnownPart part_at(const ShadeScene& scene, const Hit& hit) {
-    const std::size_t index = object_index(*scene.scene, hit.object);
-    KnownPart known;
-    known.object = &scene.scene->objects[index];
-    known.object_from_world = &scene.accel->object_from_world(index);
-    known.last = std::numeric_limits<std::uint32_t>::max();
-    known.material = known.object->material;
-    if (known.material == kNoMaterial) {
-        const Part* part = part_of(parts_of(*scene.scene, known.object->shape), hit.primitive);
-        if (part != nullptr) {
-            known.material = part->material;
-            known.first = part->first;
-            known.last = part->first + (part->count - 1);
-        } else {
-            known.first = known.last = hit.primitive;
-        }
-    }
-    known.prepared = &prepared_material(scene, known.material);
-    known.triangles = TriangleSurfaces::takes(known.at());
-    known.shape = ShapeSurfaces::kind(known.at());
-    return known;
+    return SurfaceKind::other;
 }
 
 Clearness clearness_of(const ShadeScene& scene) {
@@ -111,6 +83,34 @@ ShadeScene shade_scene(const Accel& accel, std::span<const Light> lights,
     return result;
 }
 
+KnownPart part_at(const ShadeScene& scene, const Hit& hit) {
+    const std::size_t index = object_index(*scene.scene, hit.object);
+    KnownPart known;
+    known.object = &scene.scene->objects[index];
+    known.object_from_world = &scene.accel->object_from_world(index);
+    known.last = std::numeric_limits<std::uint32_t>::max();
+    known.material = known.object->material;
+    if (known.material == kNoMaterial) {
+        const Part* part = part_of(parts_of(*scene.scene, known.object->shape), hit.primitive);
+        if (part != nullptr) {
+            known.material = part->material;
+            known.first = part->first;
+            known.last = part->first + (part->count - 1);
+        } else {
+            known.first = known.last = hit.primitive;
+        }
+    }
+    const PreparedMaterial& material = prepared_material(scene, known.material);
+    known.prepared = &material;
+    known.kind = kind_of(known.at());
+    if (known.kind == SurfaceKind::triangle) {
+        known.mesh = &scene.scene->meshes[std::get<MeshInstance>(known.object->shape).mesh];
+    }
+    known.simple = !material.has_maps && !(scene.has_bodies && material.fills) &&
+                   (!material.branches || material.only_mirrors);
+    return known;
+}
+
 FoundHit find_surface(const ShadeScene& scene, const Ray& ray, const Hit& hit) {
     const KnownPart part = part_at(scene, hit);
     FoundHit found;
@@ -118,29 +118,6 @@ FoundHit find_surface(const ShadeScene& scene, const Ray& ray, const Hit& hit) {
     found.material = part.prepared;
     set_surface_point(*scene.scene, part.at(), ray, hit, found.surface);
     return found;
-}
-
-void find_surfaces(const ShadeScene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
-                   std::span<FoundHit> found, SurfaceBatches& batches) {
-    batches.triangles.clear();
-    batches.shapes.clear();
-    KnownPart part;
-    for (std::size_t i = 0; i < hits.size(); ++i) {
-        if (!hits[i].valid()) continue;
-        if (!part.holds(hits[i])) part = part_at(scene, hits[i]);
-        found[i].object = part.object;
-        found[i].material = part.prepared;
-        if (part.triangles) {
-            batches.triangles.add(*scene.scene, part.at(), rays[i], hits[i], found[i].surface);
-        } else if (part.shape != ShapeSurfaces::Kind::other) {
-            batches.shapes.add(part.shape, *scene.scene, part.at(), rays[i], hits[i],
-                               found[i].surface);
-        } else {
-            set_surface_point(*scene.scene, part.at(), rays[i], hits[i], found[i].surface);
-        }
-    }
-    batches.triangles.find(*scene.scene);
-    batches.shapes.find();
 }
 
 glm::vec3 passed(const ShadeScene& scene, MaterialId medium, float distance) {

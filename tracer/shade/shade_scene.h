@@ -3,15 +3,14 @@
 
 #include "tracer/accel/accel.h"
 #include "tracer/accel/crossings.h"
-#include "tracer/accel/shape_surfaces.h"
 #include "tracer/accel/surface.h"
-#include "tracer/accel/triangle_surfaces.h"
 #include "tracer/shade/light_sample.h"
 #include "tracer/shade/settings.h"
 #include "tracer/shade/textured.h"
 
 #include <glm/vec3.hpp>
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -65,14 +64,32 @@ struct FoundHit {
     SurfacePoint surface;
 };
 FoundHit find_surface(const ShadeScene& scene, const Ray& ray, const Hit& hit);
-// Surfaces of shapes of which many are worked out together.
-struct SurfaceBatches {
-    TriangleSurfaces triangles;
-    ShapeSurfaces shapes;
+
+// Shapes whose surface points are worked out together with others of the kind; `other`: alone.
+enum class SurfaceKind : std::uint8_t { triangle, sphere, rectangle, other };
+
+// Some primitives of an object that have one material: rays side by side mostly hit the same.
+struct KnownPart {
+    const Object* object = nullptr;
+    const Transform* object_from_world = nullptr;
+    const Mesh* mesh = nullptr;  // of the kind `triangle`
+    const PreparedMaterial* prepared = nullptr;
+    MaterialId material = kNoMaterial;
+    std::uint32_t first = 0;  // primitives
+    std::uint32_t last = 0;
+    SurfaceKind kind = SurfaceKind::other;
+    // It has no maps, bounds no body, and sends nothing on but by only_mirrors.
+    bool simple = false;
+
+    [[nodiscard]] bool holds(const Hit& hit) const {
+        return object->id == hit.object && hit.primitive >= first && hit.primitive <= last;
+    }
+    [[nodiscard]] HitObject at() const {
+        return {*object, *object_from_world, material, prepared->has_maps};
+    }
 };
-// The same of each ray that hit something; others leave found[i] as it is. As long as the rays.
-void find_surfaces(const ShadeScene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
-                   std::span<FoundHit> found, SurfaceBatches& batches);
+// `hit` must be valid.
+KnownPart part_at(const ShadeScene& scene, const Hit& hit);
 
 // What is left after this way through a medium (Beer and Lambert's law).
 glm::vec3 passed(const ShadeScene& scene, MaterialId medium, float distance);
