@@ -49,12 +49,14 @@ EyeRayList list_of(std::span<const EyeRay> eyes) {
 // In portions of `step`, one after the other in the same memory.
 Traced breadth_first(const ShadeScene& scene, const std::vector<EyeRay>& eyes, std::size_t step) {
     Traced traced;
-    traced.rays.resize(eyes.size());
     BatchTracer tracer;
     for (std::size_t first = 0; first < eyes.size(); first += step) {
         const std::size_t count = std::min(step, eyes.size() - first);
-        tracer.trace(scene, list_of(std::span(eyes).subspan(first, count)).all(),
-                     std::span(traced.rays).subspan(first, count), traced.counts);
+        TracedRays results(count, true);
+        tracer.trace(scene, list_of(std::span(eyes).subspan(first, count)).all(), results,
+                     traced.counts);
+        for (std::size_t i = 0; i < count; ++i)
+            traced.rays.push_back({results.colours[i], results.hits[i], results.normals[i]});
     }
     return traced;
 }
@@ -271,14 +273,15 @@ TEST(BatchTracer, GoesOnInPortions) {
 TEST(BatchTracer, NoRaysAreNothing) {
     const Accel accel = accel_of(glassy_scene());
     RayCounts counts;
-    BatchTracer().trace(shade_scene(accel, {}, {}), {}, {}, counts);
+    TracedRays results(0, true);
+    BatchTracer().trace(shade_scene(accel, {}, {}), {}, results, counts);
     EXPECT_EQ(counts, RayCounts{});
 }
 
 TEST(BatchTracer, ShootsNothingOnceStopped) {
     const Accel accel = accel_of(glassy_scene());
     const std::vector<EyeRay> eyes = eyes_of(glassy_camera(), {8, 8});
-    std::vector<TracedRay> results(eyes.size());
+    TracedRays results(eyes.size(), true);
     RayCounts counts;
     std::stop_source stop;
     stop.request_stop();

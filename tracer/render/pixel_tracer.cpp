@@ -124,18 +124,18 @@ SampleRay PixelTracer::sample_ray(Pixel pixel, int index) const {
     return {{ray, part_of(cone_, settings_.samples), sample.seed}, sample.negative};
 }
 
-void PixelTracer::trace(const EyeRays& eyes, std::span<TracedRay> results, RayCounts& counts,
+void PixelTracer::trace(const EyeRays& eyes, TracedRays& results, RayCounts& counts,
                         const std::stop_token& stop) const {
     trace(scene_, eyes, results, counts, stop);
 }
 
-void PixelTracer::look(const EyeRays& eyes, std::span<TracedRay> results,
+void PixelTracer::look(const EyeRays& eyes, TracedRays& results,
                        const std::stop_token& stop) const {
     RayCounts not_counted;
     trace(look_, eyes, results, not_counted, stop);
 }
 
-void PixelTracer::trace(const ShadeScene& scene, const EyeRays& eyes, std::span<TracedRay> results,
+void PixelTracer::trace(const ShadeScene& scene, const EyeRays& eyes, TracedRays& results,
                         RayCounts& counts, const std::stop_token& stop) const {
     std::unique_ptr<BatchTracer> tracer;
     {

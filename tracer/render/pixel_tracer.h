@@ -45,13 +45,13 @@ public:
     [[nodiscard]] int sample_count() const { return pattern_.count(); }
     [[nodiscard]] const FilterSampler& filter() const { return pattern_.filter(); }
 
-    // Sets results[i] to what ray i of `eyes` brings back, and adds the rays shot to `counts`. Rays
-    // that lie side by side in the image should be so here. Once `stop` is requested the results
-    // are worthless.
-    void trace(const EyeRays& eyes, std::span<TracedRay> results, RayCounts& counts,
+    // Sets the results, as many, to what `eyes` bring back, and adds the rays shot to `counts`.
+    // Rays that lie side by side in the image should be so here. Once `stop` is requested the
+    // results are worthless.
+    void trace(const EyeRays& eyes, TracedRays& results, RayCounts& counts,
                const std::stop_token& stop) const;
     // What they hit, without colour.
-    void look(const EyeRays& eyes, std::span<TracedRay> results, const std::stop_token& stop) const;
+    void look(const EyeRays& eyes, TracedRays& results, const std::stop_token& stop) const;
 
     [[nodiscard]] const Camera& camera() const { return camera_; }
     [[nodiscard]] ImageSize size() const { return size_; }
@@ -59,8 +59,8 @@ public:
 
 private:
     [[nodiscard]] std::uint64_t seed_of(std::size_t ray) const;
-    void trace(const ShadeScene& scene, const EyeRays& eyes, std::span<TracedRay> results,
-               RayCounts& counts, const std::stop_token& stop) const;
+    void trace(const ShadeScene& scene, const EyeRays& eyes, TracedRays& results, RayCounts& counts,
+               const std::stop_token& stop) const;
 
     std::shared_ptr<const Accel> accel_;
     Camera camera_;

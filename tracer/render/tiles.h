@@ -41,13 +41,16 @@ struct TilePart {
 
     // Pixels by their number in the tile. A colour or a normal that is not finite is kept as 0, and
     // the pixel counts as broken.
-    void set(std::size_t pixel, const TracedRay& traced) {
-        set_colour(pixel, traced.colour);
-        if (!has_all() || !traced.hit.valid()) return;
-        image.depth[pixel] = traced.hit.t;
-        image.object[pixel] = traced.hit.object;
-        image.primitive[pixel] = traced.hit.primitive;
-        image.normal[pixel] = checked(pixel, traced.normal);
+    void set(std::size_t pixel, const TracedRays& traced, std::size_t i) {
+        set_colour(pixel, traced.colours[i]);
+        if (has_all()) set_hit(pixel, traced.hits[i], traced.normals[i]);
+    }
+    void set_hit(std::size_t pixel, const Hit& hit, const glm::vec3& normal) {
+        if (!hit.valid()) return;
+        image.depth[pixel] = hit.t;
+        image.object[pixel] = hit.object;
+        image.primitive[pixel] = hit.primitive;
+        image.normal[pixel] = checked(pixel, normal);
     }
     // Else the colour alone.
     [[nodiscard]] bool has_all() const { return !image.depth.empty(); }

@@ -30,10 +30,10 @@ std::vector<glm::vec3> corner_colours(const PixelTracer& tracer, const Tile& til
             places.push_back(corners.index(pixel));
             eyes.add(tracer.corner_ray(corner));
         }
-        LargeArray<TracedRay> traced(places.size());
+        TracedRays traced(places.size(), false);
         tracer.trace(eyes.all(), traced, own ? counts : not_counted, stop);
         for (std::size_t i = 0; i < places.size(); ++i)
-            colours[places[i]] = traced[i].colour;
+            colours[places[i]] = traced.colours[i];
     }
     return colours;
 }
@@ -47,10 +47,10 @@ void trace_blocks(const PixelTracer& tracer, int step, TilePart& part,
     samples.reserve(blocks.size());
     for (const Pixel& block : blocks)
         samples.push_back(block_sample(part.tile.in_image(block), step, tracer.size()));
-    LargeArray<TracedRay> traced(blocks.size());
+    TracedRays traced(blocks.size(), part.has_all());
     tracer.trace(tracer.centre_rays(samples).all(), traced, part.rays, stop);
     for (std::size_t i = 0; i < blocks.size(); ++i)
-        part.set(part.image.size.index(blocks[i]), traced[i]);
+        part.set(part.image.size.index(blocks[i]), traced, i);
 }
 
 void trace_centres(const PixelTracer& tracer, const CoarseImage* coarse, TilePart& part,
@@ -62,21 +62,19 @@ void trace_centres(const PixelTracer& tracer, const CoarseImage* coarse, TilePar
             return take_sample(*coarse, tile.in_image(pixel), part, part.image.size.index(pixel));
         });
     }
-    LargeArray<TracedRay> traced(pixels.size());
+    TracedRays traced(pixels.size(), part.has_all());
     tracer.trace(centre_rays(tracer, tile, pixels).all(), traced, part.rays, stop);
     for (std::size_t i = 0; i < pixels.size(); ++i)
-        part.set(part.image.size.index(pixels[i]), traced[i]);
+        part.set(part.image.size.index(pixels[i]), traced, i);
 }
 
 void look_at_centres(const PixelTracer& tracer, TilePart& part, const std::stop_token& stop) {
     if (!part.has_all()) return;
     const std::vector<Pixel> pixels = pixels_in_blocks(part.image.size);
-    LargeArray<TracedRay> seen(pixels.size());
+    TracedRays seen(pixels.size(), true);
     tracer.look(centre_rays(tracer, part.tile, pixels).all(), seen, stop);
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-        seen[i].colour = glm::vec3(0.0f);
-        part.set(part.image.size.index(pixels[i]), seen[i]);
-    }
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+        part.set_hit(part.image.size.index(pixels[i]), seen.hits[i], seen.normals[i]);
 }
 
 void trace_corners(const PixelTracer& tracer, TilePart& part, const std::stop_token& stop) {
@@ -105,10 +103,10 @@ void add_samples(const PixelTracer& tracer, const Tile& tile, const std::vector<
         eyes.add(ray.eye);
         negative.push_back(ray.negative ? 1 : 0);
     }
-    LargeArray<TracedRay> traced(pixels.size());
+    TracedRays traced(pixels.size(), false);
     tracer.trace(eyes.all(), traced, counts, stop);
     for (std::size_t i = 0; i < pixels.size(); ++i)
-        sums[i].add(traced[i].colour, negative[i] != 0);
+        sums[i].add(traced.colours[i], negative[i] != 0);
 }
 
 }  // namespace raypick

@@ -28,11 +28,24 @@ std::uint8_t direction_group(BranchKind kind, const glm::vec3& direction) {
 
 }  // namespace
 
-void BatchTracer::Generation::put_inside(PathRay& ray, const Interior& interior) {
-    if (ray.interior != kNoInterior) {
-        interiors[ray.interior] = interior;
+void BatchTracer::Generation::clear() {
+    paths.clear();
+    rays.clear();
+    directions.clear();
+    interiors.clear();
+}
+
+void BatchTracer::Generation::add(std::size_t count) {
+    paths.resize(paths.size() + count);
+    rays.resize(paths.size());
+    directions.resize(paths.size());
+}
+
+void BatchTracer::Generation::put_inside(Path& path, const Interior& interior) {
+    if (path.interior != kNoInterior) {
+        interiors[path.interior] = interior;
     } else if (!interior.empty()) {
-        ray.interior = static_cast<std::uint32_t>(interiors.size());
+        path.interior = static_cast<std::uint32_t>(interiors.size());
         interiors.push_back(interior);
     }
 }
@@ -44,26 +57,31 @@ BatchTracer::Generation& BatchTracer::generation(int depth) {
     return generations_[index];
 }
 
-void BatchTracer::trace(const ShadeScene& scene, const EyeRays& eyes, std::span<TracedRay> results,
+void BatchTracer::trace(const ShadeScene& scene, const EyeRays& eyes, TracedRays& results,
                         RayCounts& counts, const std::stop_token& stop) {
     const Job job{scene, eyes, results, counts, stop};
     begin(eyes);
     counts.eye += eyes.size();
     follow(job, 1);
-    const LargeArray<PathRay>& rays = generation(1).rays;
-    for (std::size_t i = 0; i < rays.size(); ++i)
-        results[i].colour = rays[i].passed * rays[i].colour;
+    const LargeArray<Path>& paths = generation(1).paths;
+    for (std::size_t i = 0; i < paths.size(); ++i)
+        results.colours[i] = paths[i].passed * paths[i].colour;
 }
 
 void BatchTracer::begin(const EyeRays& eyes) {
     Generation& first = generation(1);
-    first.interiors.clear();
-    first.rays.resize(eyes.size());
-    for (std::size_t i = 0; i < eyes.size(); ++i)  // rays, shares and directions have no use here
-        set_begun(first.rays[i], static_cast<std::uint32_t>(i), eyes.cone, 1.0f, eyes.seed(i));
+    first.clear();
+    first.paths.resize(eyes.size());
+    Path path;
+    path.cone = eyes.cone;
+    for (std::size_t i = 0; i < eyes.size(); ++i) {
+        path.parent = static_cast<std::uint32_t>(i);
+        path.seed = eyes.seed(i);
+        first.paths[i] = path;
+    }
 }
 
-void BatchTracer::set_begun(PathRay& path, std::uint32_t parent, const RayCone& cone, float weight,
+void BatchTracer::set_begun(Path& path, std::uint32_t parent, const RayCone& cone, float weight,
                             std::uint64_t seed) {
     path.parent = parent;
     path.cone = cone;
@@ -78,16 +96,16 @@ void BatchTracer::set_begun(PathRay& path, std::uint32_t parent, const RayCone& 
 void BatchTracer::follow(const Job& job, int depth) {
     const Step step{job, depth, generation(depth), generation(depth + 1)};
     std::vector<std::uint32_t>& order = step.at.order;
-    order.resize(step.at.rays.size());
+    order.resize(step.at.paths.size());
     if (depth == 1) {  // as they come
         std::iota(order.begin(), order.end(), 0u);
     } else {
         std::array<std::uint32_t, kDirections + 1> place{};
-        for (const PathRay& ray : step.at.rays)
-            ++place[ray.direction + std::size_t{1}];
+        for (const std::uint8_t direction : step.at.directions)
+            ++place[direction + std::size_t{1}];
         std::partial_sum(place.begin(), place.end(), place.begin());
-        for (std::uint32_t i = 0; i < step.at.rays.size(); ++i)
-            order[place[step.at.rays[i].direction]++] = i;
+        for (std::uint32_t i = 0; i < order.size(); ++i)
+            order[place[step.at.directions[i]]++] = i;
     }
     for (std::size_t first = 0; first < order.size(); first += kPortion) {
         if (job.stop.stop_requested()) return;
@@ -98,31 +116,30 @@ void BatchTracer::follow(const Job& job, int depth) {
 
 void BatchTracer::follow_portion(const Step& step, std::span<const std::uint32_t> portion) {
     load_rays(step, portion);
-    step.next.rays.clear();
-    step.next.interiors.clear();
+    step.next.clear();
     find_points(step);
     send_mirrored(step);
     light_points(step);
-    if (step.next.rays.empty()) return;
+    if (step.next.paths.empty()) return;
     follow(step.job, step.depth + 1);
     // In the order in which they left.
-    for (const PathRay& ray : step.next.rays)
-        step.at.rays[ray.parent].colour += ray.share * (ray.passed * ray.colour);
+    for (const Path& path : step.next.paths)
+        step.at.paths[path.parent].colour += path.share * (path.passed * path.colour);
 }
 
 void BatchTracer::load_rays(const Step& step, std::span<const std::uint32_t> portion) {
     at_work_.assign(portion.begin(), portion.end());
-    rays_.resize(portion.size());
     directions_.assign(portion.size(), 0);
-    if (step.depth == 1) {
-        const std::span<const Ray> eyes = step.job.eyes.rays;  // as they come
-        std::copy_n(&eyes[portion.front()], portion.size(), rays_.begin());
+    if (step.depth == 1) {  // as they come
+        rays_ = step.job.eyes.rays.subspan(portion.front(), portion.size());
         return;
     }
+    loaded_.resize(portion.size());
     for (std::size_t i = 0; i < portion.size(); ++i) {
-        rays_[i] = step.at.rays[portion[i]].ray;
-        directions_[i] = step.at.rays[portion[i]].direction;
+        loaded_[i] = step.at.rays[portion[i]];
+        directions_[i] = step.at.directions[portion[i]];
     }
+    rays_ = loaded_;
 }
 
 // Follows the rays at work to where they end, through surfaces that are hidden inside of glass of a
@@ -138,7 +155,7 @@ void BatchTracer::find_points(const Step& step) {
         arrivals_.begin(step.job.scene, rays_, hits_);
         for (std::size_t i = 0; i < at_work_.size(); ++i) {
             if (!hits_[i].valid()) {
-                see_sky(step, step.at.rays[at_work_[i]], rays_[i]);
+                see_sky(step, step.at.paths[at_work_[i]], rays_[i]);
             } else if (const Arrivals::Block* full = arrivals_.add(i)) {
                 arrive(step, hidden, *full);
             }
@@ -151,16 +168,17 @@ void BatchTracer::find_points(const Step& step) {
 
 // Of the rays at work those that go on.
 void BatchTracer::keep_hidden() {
-    std::sort(hidden_.begin(), hidden_.end());  // those that travel together side by side again
+    std::sort(hidden_.begin(), hidden_.end(),  // those that travel together side by side again
+              [](const HiddenAt& a, const HiddenAt& b) { return a.i < b.i; });
+    loaded_.resize(hidden_.size());
     for (std::size_t k = 0; k < hidden_.size(); ++k) {
-        const std::uint32_t i = hidden_[k];
-        at_work_[k] = at_work_[i];
-        directions_[k] = directions_[i];
-        rays_[k] = rays_[i];
+        at_work_[k] = at_work_[hidden_[k].i];
+        directions_[k] = directions_[hidden_[k].i];
+        loaded_[k] = hidden_[k].onwards;
     }
     at_work_.resize(hidden_.size());
     directions_.resize(hidden_.size());
-    rays_.resize(hidden_.size());
+    rays_ = loaded_;
 }
 
 // One query for each group of rays that go the same way.
@@ -173,7 +191,7 @@ void BatchTracer::intersect_groups(const Step& step) {
         std::size_t end = first + 1;
         while (end < rays_.size() && directions_[end] == directions_[first])
             ++end;
-        scene.accel->intersect(std::span(rays_).subspan(first, end - first),
+        scene.accel->intersect(rays_.subspan(first, end - first),
                                std::span(hits_).subspan(first, end - first), query);
         first = end;
     }
@@ -181,18 +199,18 @@ void BatchTracer::intersect_groups(const Step& step) {
 
 void BatchTracer::note_first_hits(const Job& job) {
     for (std::size_t i = 0; i < hits_.size(); ++i) {
-        TracedRay& result = job.results[at_work_[i]];
-        result.hit = hits_[i];
-        result.normal = glm::vec3(0.0f);
         job.counts.eye_hits += hits_[i].valid() ? 1 : 0;
+        if (!job.results.has_hits()) continue;
+        job.results.hits[at_work_[i]] = hits_[i];
+        job.results.normals[at_work_[i]] = glm::vec3(0.0f);
     }
 }
 
 // What the rays of a block bring back by themselves.
 void BatchTracer::arrive(const Step& step, int hidden, const Arrivals::Block& block) {
     const std::size_t first = points_.add(block.rows);
-    const auto path_of = [&](std::size_t lane) -> PathRay& {
-        return step.at.rays[at_work_[block.hit[lane]]];
+    const auto path_of = [&](std::size_t lane) -> Path& {
+        return step.at.paths[at_work_[block.hit[lane]]];
     };
     bool alike = true;  // all at work on the same part, with nothing that wants a closer look
     std::uint32_t others = 0;
@@ -224,10 +242,10 @@ void BatchTracer::arrive(const Step& step, int hidden, const Arrivals::Block& bl
 
 // Ray i of those at work, at the end of a path outside of everything, on a KnownPart that is
 // simple.
-void BatchTracer::arrive_simply(const Step& step, PathRay& path, const PreparedMaterial& material,
+void BatchTracer::arrive_simply(const Step& step, Path& path, const PreparedMaterial& material,
                                 std::size_t i, std::size_t point) {
     path.cone.width = path.cone.at(hits_[i].t);
-    if (step.depth == 1) step.job.results[path.parent].normal = points_.normal(point);
+    if (step.notes_normals()) step.job.results.normals[path.parent] = points_.normal(point);
     if (material.branches && step.depth < step.job.scene.settings.depth) {
         want_mirrored(step, point, material);
     }
@@ -235,7 +253,7 @@ void BatchTracer::arrive_simply(const Step& step, PathRay& path, const PreparedM
 
 void BatchTracer::arrive(const Step& step, int hidden, const FoundHit& found, std::size_t i,
                          std::size_t point) {
-    PathRay& path = step.at.rays[at_work_[i]];
+    Path& path = step.at.paths[at_work_[i]];
     const ShadeScene& scene = step.job.scene;
     const Hit& hit = hits_[i];
     const Ray& ray = rays_[i];
@@ -244,8 +262,8 @@ void BatchTracer::arrive(const Step& step, int hidden, const FoundHit& found, st
     path.cone.width = path.cone.at(hit.t);
     if (!boundary.is_there && hidden < kMostHidden) {
         step.at.put_inside(path, boundary.crossing->after);
-        rays_[i] = Ray{offset_origin(found.surface, ray.direction), ray.direction};
-        hidden_.push_back(static_cast<std::uint32_t>(i));
+        hidden_.push_back({static_cast<std::uint32_t>(i),
+                           {offset_origin(found.surface, ray.direction), ray.direction}});
         points_.leave_out(point);
         return;
     }
@@ -258,7 +276,7 @@ void BatchTracer::arrive(const Step& step, int hidden, const FoundHit& found, st
         point, shading.material,
         material.has_maps ? own_light(*scene.scene, shading.material) : material.own);
     if (material.has_maps) points_.set_normal(point, shading.normal);
-    if (step.depth == 1) step.job.results[path.parent].normal = shading.normal;
+    if (step.notes_normals()) step.job.results.normals[path.parent] = shading.normal;
     if (!material.branches || step.depth >= scene.settings.depth) return;
     if (material.only_mirrors) {
         want_mirrored(step, point, material);
@@ -268,7 +286,7 @@ void BatchTracer::arrive(const Step& step, int hidden, const FoundHit& found, st
     }
 }
 
-void BatchTracer::see_sky(const Step& step, PathRay& path, const Ray& ray) {
+void BatchTracer::see_sky(const Step& step, Path& path, const Ray& ray) {
     const ShadeScene& scene = step.job.scene;
     path.colour = sky_colour(scene, ray.direction, path.cone.spread);
     if (const Interior* interior = step.at.interior_of(path)) {
@@ -279,20 +297,22 @@ void BatchTracer::see_sky(const Step& step, PathRay& path, const Ray& ray) {
 // Rays of the next generation.
 void BatchTracer::send_branches(const Step& step, std::uint32_t from, const ShadingPoint& point,
                                 const Boundary& boundary) {
-    const PathRay& path = step.at.rays[from];
+    const Path& path = step.at.paths[from];
     const ShadeScene& scene = step.job.scene;
     find_branches(scene, point, boundary, path.weight, branches_);
     for (std::size_t i = 0; i < branches_.count; ++i) {
         const Branch& branch = branches_.branch[i];
-        count_branch(step.job.counts, branch.kind, step.depth + 1);
-        PathRay& onwards = step.next.add();
-        set_leaving(point, branch.direction, onwards.ray);
-        onwards.ray.t_min = 0.0f;
-        onwards.ray.t_max = std::numeric_limits<float>::infinity();
+        count_branches(step.job.counts, branch.kind, 1, step.depth + 1);
+        step.next.add(1);
+        Ray& ray = step.next.rays.back();
+        set_leaving(point, branch.direction, ray);
+        ray.t_min = 0.0f;
+        ray.t_max = std::numeric_limits<float>::infinity();
+        step.next.directions.back() = direction_group(branch.kind, branch.direction);
+        Path& onwards = step.next.paths.back();
         onwards.share = branch.share;
         set_begun(onwards, from, path.cone, branch.weight,
                   branch_seed(scene, path.seed, branch.kind));
-        onwards.direction = direction_group(branch.kind, branch.direction);
         if (branch.kind == BranchKind::transmitted && boundary.crossing != nullptr) {
             step.next.put_inside(onwards, boundary.crossing->after);
         } else if (path.interior != kNoInterior) {
@@ -304,7 +324,7 @@ void BatchTracer::send_branches(const Step& step, std::uint32_t from, const Shad
 // What find_branches would say of this point, on a surface that only mirrors.
 void BatchTracer::want_mirrored(const Step& step, std::size_t point,
                                 const PreparedMaterial& material) {
-    const float weight = step.at.rays[points_.ray(point)].weight * largest(material.mirrored);
+    const float weight = step.at.paths[points_.ray(point)].weight * largest(material.mirrored);
     const float cutoff = step.job.scene.settings.cutoff;
     if (cutoff != 0.0f && !(weight > cutoff)) return;
     points_.want_mirrored(point);
@@ -315,20 +335,24 @@ void BatchTracer::want_mirrored(const Step& step, std::size_t point,
 void BatchTracer::send_mirrored(const Step& step) {
     if (mirrored_.empty()) return;
     points_.mirror();
-    for (const Mirrored& mirrored : mirrored_) {
+    const std::size_t first = step.next.paths.size();
+    step.next.add(mirrored_.size());
+    for (std::size_t k = 0; k < mirrored_.size(); ++k) {
+        const Mirrored& mirrored = mirrored_[k];
         const std::uint32_t from = points_.ray(mirrored.point);
-        const PathRay& path = step.at.rays[from];
-        count_branch(step.job.counts, BranchKind::mirrored, step.depth + 1);
-        PathRay& onwards = step.next.add();
-        points_.take_mirrored(mirrored.point, onwards.ray);
+        const Path& path = step.at.paths[from];
+        Ray& ray = step.next.rays[first + k];
+        points_.take_mirrored(mirrored.point, ray);
+        step.next.directions[first + k] = direction_group(BranchKind::mirrored, ray.direction);
+        Path& onwards = step.next.paths[first + k];
         onwards.share = mirrored.material->mirrored;
         set_begun(onwards, from, path.cone, mirrored.weight,
                   branch_seed(step.job.scene, path.seed, BranchKind::mirrored));
-        onwards.direction = direction_group(BranchKind::mirrored, onwards.ray.direction);
         if (path.interior != kNoInterior) {
             step.next.put_inside(onwards, step.at.interiors[path.interior]);
         }
     }
+    count_branches(step.job.counts, BranchKind::mirrored, mirrored_.size(), step.depth + 1);
 }
 
 // One light after the other, so that rays to the same light travel together.
@@ -342,7 +366,7 @@ void BatchTracer::light_points(const Step& step) {
         }
     }
     for (std::size_t i = 0; i < points_.size(); ++i) {
-        if (points_.holds(i)) step.at.rays[points_.ray(i)].colour = points_.colour(i);
+        if (points_.holds(i)) step.at.paths[points_.ray(i)].colour = points_.colour(i);
     }
 }
 
@@ -363,7 +387,7 @@ void BatchTracer::shine(const Step& step, std::size_t light, int sample) {
     }
     for (std::size_t i = 0; i < points_.size(); ++i) {
         if (!points_.holds(i)) continue;
-        const std::uint64_t seed = light_seed(scene, step.at.rays[points_.ray(i)].seed, light);
+        const std::uint64_t seed = light_seed(scene, step.at.paths[points_.ray(i)].seed, light);
         points_.shine(i, light_sample(source, points_.position(i), sample, seed));
     }
 }
@@ -415,7 +439,7 @@ void BatchTracer::tint_shares(const Step& step, const PreparedLight& light,
     blocked_ = crossings_.blocked;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         if (blocked_[i] != 0) continue;
-        const PathRay& path = step.at.rays[points_.ray(shadowed_[i])];
+        const Path& path = step.at.paths[points_.ray(shadowed_[i])];
         const Interior* interior = step.at.interior_of(path);
         if (crossings_.of(i).empty() && interior == nullptr) continue;
         const glm::vec3 share =

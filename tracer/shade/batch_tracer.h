@@ -33,49 +33,48 @@ namespace raypick {
 // the same time.
 class BatchTracer {
 public:
-    // Sets results[i] to what trace() finds for ray i of `eyes`, and adds the rays to `counts`.
-    // Once `stop` is requested no more rays are shot, and the results are worthless.
-    void trace(const ShadeScene& scene, const EyeRays& eyes, std::span<TracedRay> results,
-               RayCounts& counts, const std::stop_token& stop = {});
+    // Sets the results, which are as many, to what trace() finds for `eyes`, and adds the rays to
+    // `counts`. Once `stop` is requested no more rays are shot, and the results are worthless.
+    void trace(const ShadeScene& scene, const EyeRays& eyes, TracedRays& results, RayCounts& counts,
+               const std::stop_token& stop = {});
 
 private:
-    // A ray and what comes along it: passed * colour.
-    struct PathRay {
-        Ray ray;                   // not of eye rays, which have theirs already
+    // What comes along a ray: passed * colour. A cache line, so that none is fetched in vain.
+    struct alignas(64) Path {
         glm::vec3 share{1.0f};     // of what comes along it, in the colour at its parent's end
-        std::uint32_t parent = 0;  // the ray at whose end it begins; an eye ray's number
+        std::uint32_t parent = 0;  // the path at whose end it begins; an eye ray's number
         RayCone cone;              // at its origin, then at its end
         float weight = 1.0f;       // the most that it can add to its pixel
-        std::uint64_t seed = 0;    // of what is random at its end
         std::uint32_t interior = kNoInterior;
-        std::uint8_t direction = 0;  // group of rays that it travels with
-        glm::vec3 passed{1.0f};      // what absorption leaves on its way
-        glm::vec3 colour{0.0f};      // that leaves its end
+        std::uint64_t seed = 0;  // of what is random at its end
+        glm::vec3 passed{1.0f};  // what absorption leaves on its way
+        glm::vec3 colour{0.0f};  // that leaves its end
     };
+    static_assert(sizeof(Path) == 64);
     static constexpr std::uint32_t kNoInterior = 0xffffffffu;  // outside of everything
 
-    // All rays of one depth that are there at a time.
+    // All rays of one depth that are there at a time, in the order in which they left.
     struct Generation {
-        LargeArray<PathRay> rays;          // in the order in which they left
-        std::vector<Interior> interiors;   // of those inside of something
-        std::vector<std::uint32_t> order;  // in which they are followed
+        LargeArray<Path> paths;
+        LargeArray<Ray> rays;                 // empty for eye rays, which have theirs already
+        LargeArray<std::uint8_t> directions;  // groups of rays that travel together; likewise
+        std::vector<Interior> interiors;      // of those inside of something
+        std::vector<std::uint32_t> order;     // in which they are followed
 
-        [[nodiscard]] const Interior* interior_of(const PathRay& ray) const {
-            return ray.interior == kNoInterior ? nullptr : &interiors[ray.interior];
+        [[nodiscard]] const Interior* interior_of(const Path& path) const {
+            return path.interior == kNoInterior ? nullptr : &interiors[path.interior];
         }
-        // One ray more, all of which is to be set: clearing it takes its time.
-        PathRay& add() {
-            rays.resize(rays.size() + 1);
-            return rays.back();
-        }
-        void put_inside(PathRay& ray, const Interior& interior);
+        void clear();
+        // So many rays more, all of which is to be set: clearing it takes its time.
+        void add(std::size_t count);
+        void put_inside(Path& path, const Interior& interior);
     };
 
     // What one call of trace() is about.
     struct Job {
         const ShadeScene& scene;
         const EyeRays& eyes;
-        std::span<TracedRay> results;
+        TracedRays& results;
         RayCounts& counts;
         const std::stop_token& stop;
     };
@@ -85,12 +84,14 @@ private:
         int depth = 1;
         Generation& at;
         Generation& next;
+
+        [[nodiscard]] bool notes_normals() const { return depth == 1 && job.results.has_hits(); }
     };
 
     Generation& generation(int depth);
     void begin(const EyeRays& eyes);
-    // All but the ray itself, its share and its direction.
-    static void set_begun(PathRay& path, std::uint32_t parent, const RayCone& cone, float weight,
+    // All but the share.
+    static void set_begun(Path& path, std::uint32_t parent, const RayCone& cone, float weight,
                           std::uint64_t seed);
     void follow(const Job& job, int depth);
     void follow_portion(const Step& step, std::span<const std::uint32_t> portion);
@@ -100,11 +101,11 @@ private:
     void intersect_groups(const Step& step);
     void note_first_hits(const Job& job);
     void arrive(const Step& step, int hidden, const Arrivals::Block& block);
-    void arrive_simply(const Step& step, PathRay& path, const PreparedMaterial& material,
+    void arrive_simply(const Step& step, Path& path, const PreparedMaterial& material,
                        std::size_t i, std::size_t point);
     void arrive(const Step& step, int hidden, const FoundHit& found, std::size_t i,
                 std::size_t point);
-    static void see_sky(const Step& step, PathRay& path, const Ray& ray);
+    static void see_sky(const Step& step, Path& path, const Ray& ray);
     void send_branches(const Step& step, std::uint32_t from, const ShadingPoint& point,
                        const Boundary& boundary);
     void want_mirrored(const Step& step, std::size_t point, const PreparedMaterial& material);
@@ -121,11 +122,17 @@ private:
     // Of the portion at work: all that is resized is written before it is read.
     LargeArray<std::uint32_t> at_work_;  // rays on their way
     LargeArray<std::uint8_t> directions_;
-    LargeArray<Ray> rays_;
+    LargeArray<Ray> loaded_;
+    std::span<const Ray> rays_;
     LargeArray<Hit> hits_;
     Arrivals arrivals_;
     std::array<FoundHit, Arrivals::kLanes> found_;  // of a block
-    std::vector<std::uint32_t> hidden_;             // of those at work: at a hidden surface
+    // A ray that goes on through a hidden surface, by its number among those at work.
+    struct HiddenAt {
+        std::uint32_t i = 0;
+        Ray onwards;
+    };
+    std::vector<HiddenAt> hidden_;
     Crossing crossing_;
     Branches branches_;
     SurfaceMaterial with_maps_;  // of the ray that arrives

@@ -53,4 +53,19 @@ struct TracedRay {
     glm::vec3 normal{0.0f};  // shading normal towards the eye, scene space; 0 on a miss
 };
 
+// Many of them; of some nobody looks at more than the colour.
+struct TracedRays {
+    LargeArray<glm::vec3> colours;
+    LargeArray<Hit> hits;  // as many, or none
+    LargeArray<glm::vec3> normals;
+
+    // All of which is to be set.
+    TracedRays(std::size_t count, bool with_hits) : colours(count) {
+        if (!with_hits) return;
+        hits.resize(count);
+        normals.resize(count);
+    }
+    [[nodiscard]] bool has_hits() const { return !hits.empty(); }
+};
+
 }  // namespace raypick

@@ -36,11 +36,11 @@ inline std::size_t counted_depth(int depth) {
     return static_cast<std::size_t>(std::min(depth, kMaxDepth));
 }
 
-// `depth`: of the ray that leaves.
-inline void count_branch(RayCounts& counts, BranchKind kind, int depth) {
+// `depth`: of the rays that leave.
+inline void count_branches(RayCounts& counts, BranchKind kind, std::size_t rays, int depth) {
     const bool mirrored = kind == BranchKind::mirrored;
-    ++(mirrored ? counts.reflection : counts.refraction);
-    ++(mirrored ? counts.reflection_at : counts.refraction_at)[counted_depth(depth)];
+    (mirrored ? counts.reflection : counts.refraction) += rays;
+    (mirrored ? counts.reflection_at : counts.refraction_at)[counted_depth(depth)] += rays;
 }
 
 // `depth`: of the ray whose hit they start from.

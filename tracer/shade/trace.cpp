@@ -89,7 +89,7 @@ private:
         for (std::size_t i = 0; i < branches.count; ++i) {
             const Branch& branch = branches.branch[i];
             const Path next = onwards(path, branch, boundary);
-            count_branch(counts_, branch.kind, next.depth);
+            count_branches(counts_, branch.kind, 1, next.depth);
             colour += branch.share * follow(leaving(point, branch.direction), next);
         }
         return colour;
