@@ -1,13 +1,9 @@
 #include "tracer/shade/batch_tracer.h"
 
-#include "tracer/shade/shadow.h"
-
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <limits>
-#include <numeric>
 
 namespace raypick {
 
@@ -17,40 +13,9 @@ namespace {
 // many. Enough for groups that share a direction, and little enough to stay in a core's cache.
 constexpr std::size_t kPortion = 1024;
 
-constexpr std::size_t kOctants = 8;
-constexpr std::size_t kDirections = 3 * kOctants;  // by kind of branch and octant
-
-std::uint8_t direction_group(BranchKind kind, const glm::vec3& direction) {
-    const unsigned octant = (direction.x < 0.0f ? 1u : 0u) | (direction.y < 0.0f ? 2u : 0u) |
-                            (direction.z < 0.0f ? 4u : 0u);
-    return static_cast<std::uint8_t>(kOctants * static_cast<std::size_t>(kind) + octant);
-}
-
 }  // namespace
 
-void BatchTracer::Generation::clear() {
-    paths.clear();
-    rays.clear();
-    directions.clear();
-    interiors.clear();
-}
-
-void BatchTracer::Generation::add(std::size_t count) {
-    paths.resize(paths.size() + count);
-    rays.resize(paths.size());
-    directions.resize(paths.size());
-}
-
-void BatchTracer::Generation::put_inside(Path& path, const Interior& interior) {
-    if (path.interior != kNoInterior) {
-        interiors[path.interior] = interior;
-    } else if (!interior.empty()) {
-        path.interior = static_cast<std::uint32_t>(interiors.size());
-        interiors.push_back(interior);
-    }
-}
-
-BatchTracer::Generation& BatchTracer::generation(int depth) {
+Generation& BatchTracer::generation(int depth) {
     const auto index = static_cast<std::size_t>(depth - 1);
     while (generations_.size() <= index)
         generations_.emplace_back();
@@ -63,7 +28,7 @@ void BatchTracer::trace(const ShadeScene& scene, const EyeRays& eyes, TracedRays
     begin(eyes);
     counts.eye += eyes.size();
     follow(job, 1);
-    const LargeArray<Path>& paths = generation(1).paths;
+    const LargeArray<RayPath>& paths = generation(1).paths;
     for (std::size_t i = 0; i < paths.size(); ++i)
         results.colours[i] = paths[i].passed * paths[i].colour;
 }
@@ -72,7 +37,7 @@ void BatchTracer::begin(const EyeRays& eyes) {
     Generation& first = generation(1);
     first.clear();
     first.paths.resize(eyes.size());
-    Path path;
+    RayPath path;
     path.cone = eyes.cone;
     for (std::size_t i = 0; i < eyes.size(); ++i) {
         path.parent = static_cast<std::uint32_t>(i);
@@ -81,7 +46,7 @@ void BatchTracer::begin(const EyeRays& eyes) {
     }
 }
 
-void BatchTracer::set_begun(Path& path, std::uint32_t parent, const RayCone& cone, float weight,
+void BatchTracer::set_begun(RayPath& path, std::uint32_t parent, const RayCone& cone, float weight,
                             std::uint64_t seed) {
     path.parent = parent;
     path.cone = cone;
@@ -95,22 +60,16 @@ void BatchTracer::set_begun(Path& path, std::uint32_t parent, const RayCone& con
 // Brings back what comes along all rays of a generation.
 void BatchTracer::follow(const Job& job, int depth) {
     const Step step{job, depth, generation(depth), generation(depth + 1)};
-    std::vector<std::uint32_t>& order = step.at.order;
-    order.resize(step.at.paths.size());
-    if (depth == 1) {  // as they come
-        std::iota(order.begin(), order.end(), 0u);
+    if (depth == 1) {
+        step.at.keep_order();
     } else {
-        std::array<std::uint32_t, kDirections + 1> place{};
-        for (const std::uint8_t direction : step.at.directions)
-            ++place[direction + std::size_t{1}];
-        std::partial_sum(place.begin(), place.end(), place.begin());
-        for (std::uint32_t i = 0; i < order.size(); ++i)
-            order[place[step.at.directions[i]]++] = i;
+        step.at.order_by_direction();
     }
+    const std::span<const std::uint32_t> order = step.at.order;
     for (std::size_t first = 0; first < order.size(); first += kPortion) {
         if (job.stop.stop_requested()) return;
         const std::size_t count = std::min(kPortion, order.size() - first);
-        follow_portion(step, std::span(order).subspan(first, count));
+        follow_portion(step, order.subspan(first, count));
     }
 }
 
@@ -123,7 +82,7 @@ void BatchTracer::follow_portion(const Step& step, std::span<const std::uint32_t
     if (step.next.paths.empty()) return;
     follow(step.job, step.depth + 1);
     // In the order in which they left.
-    for (const Path& path : step.next.paths)
+    for (const RayPath& path : step.next.paths)
         step.at.paths[path.parent].colour += path.share * (path.passed * path.colour);
 }
 
@@ -209,7 +168,7 @@ void BatchTracer::note_first_hits(const Job& job) {
 // What the rays of a block bring back by themselves.
 void BatchTracer::arrive(const Step& step, int hidden, const Arrivals::Block& block) {
     const std::size_t first = points_.add(block.rows);
-    const auto path_of = [&](std::size_t lane) -> Path& {
+    const auto path_of = [&](std::size_t lane) -> RayPath& {
         return step.at.paths[at_work_[block.hit[lane]]];
     };
     bool alike = true;  // all at work on the same part, with nothing that wants a closer look
@@ -242,7 +201,7 @@ void BatchTracer::arrive(const Step& step, int hidden, const Arrivals::Block& bl
 
 // Ray i of those at work, at the end of a path outside of everything, on a KnownPart that is
 // simple.
-void BatchTracer::arrive_simply(const Step& step, Path& path, const PreparedMaterial& material,
+void BatchTracer::arrive_simply(const Step& step, RayPath& path, const PreparedMaterial& material,
                                 std::size_t i, std::size_t point) {
     path.cone.width = path.cone.at(hits_[i].t);
     if (step.notes_normals()) step.job.results.normals[path.parent] = points_.normal(point);
@@ -253,7 +212,7 @@ void BatchTracer::arrive_simply(const Step& step, Path& path, const PreparedMate
 
 void BatchTracer::arrive(const Step& step, int hidden, const FoundHit& found, std::size_t i,
                          std::size_t point) {
-    Path& path = step.at.paths[at_work_[i]];
+    RayPath& path = step.at.paths[at_work_[i]];
     const ShadeScene& scene = step.job.scene;
     const Hit& hit = hits_[i];
     const Ray& ray = rays_[i];
@@ -286,7 +245,7 @@ void BatchTracer::arrive(const Step& step, int hidden, const FoundHit& found, st
     }
 }
 
-void BatchTracer::see_sky(const Step& step, Path& path, const Ray& ray) {
+void BatchTracer::see_sky(const Step& step, RayPath& path, const Ray& ray) {
     const ShadeScene& scene = step.job.scene;
     path.colour = sky_colour(scene, ray.direction, path.cone.spread);
     if (const Interior* interior = step.at.interior_of(path)) {
@@ -297,7 +256,7 @@ void BatchTracer::see_sky(const Step& step, Path& path, const Ray& ray) {
 // Rays of the next generation.
 void BatchTracer::send_branches(const Step& step, std::uint32_t from, const ShadingPoint& point,
                                 const Boundary& boundary) {
-    const Path& path = step.at.paths[from];
+    const RayPath& path = step.at.paths[from];
     const ShadeScene& scene = step.job.scene;
     find_branches(scene, point, boundary, path.weight, branches_);
     for (std::size_t i = 0; i < branches_.count; ++i) {
@@ -309,7 +268,7 @@ void BatchTracer::send_branches(const Step& step, std::uint32_t from, const Shad
         ray.t_min = 0.0f;
         ray.t_max = std::numeric_limits<float>::infinity();
         step.next.directions.back() = direction_group(branch.kind, branch.direction);
-        Path& onwards = step.next.paths.back();
+        RayPath& onwards = step.next.paths.back();
         onwards.share = branch.share;
         set_begun(onwards, from, path.cone, branch.weight,
                   branch_seed(scene, path.seed, branch.kind));
@@ -340,11 +299,11 @@ void BatchTracer::send_mirrored(const Step& step) {
     for (std::size_t k = 0; k < mirrored_.size(); ++k) {
         const Mirrored& mirrored = mirrored_[k];
         const std::uint32_t from = points_.ray(mirrored.point);
-        const Path& path = step.at.paths[from];
+        const RayPath& path = step.at.paths[from];
         Ray& ray = step.next.rays[first + k];
         points_.take_mirrored(mirrored.point, ray);
         step.next.directions[first + k] = direction_group(BranchKind::mirrored, ray.direction);
-        Path& onwards = step.next.paths[first + k];
+        RayPath& onwards = step.next.paths[first + k];
         onwards.share = mirrored.material->mirrored;
         set_begun(onwards, from, path.cone, mirrored.weight,
                   branch_seed(step.job.scene, path.seed, BranchKind::mirrored));
@@ -355,97 +314,11 @@ void BatchTracer::send_mirrored(const Step& step) {
     count_branches(step.job.counts, BranchKind::mirrored, mirrored_.size(), step.depth + 1);
 }
 
-// One light after the other, so that rays to the same light travel together.
 void BatchTracer::light_points(const Step& step) {
-    const std::vector<PreparedLight>& lights = step.job.scene.lights;
-    if (step.job.scene.settings.shadows) points_.leave_surfaces();
-    for (std::size_t light = 0; light < lights.size() && points_.size() != 0; ++light) {
-        for (int sample = 0; sample < lights[light].count(); ++sample) {
-            if (step.job.stop.stop_requested()) return;
-            light_points_by(step, light, sample);
-        }
-    }
+    light_pass_.light({step.job.scene, step.at, step.depth, step.job.counts, step.job.stop},
+                      points_);
     for (std::size_t i = 0; i < points_.size(); ++i) {
         if (points_.holds(i)) step.at.paths[points_.ray(i)].colour = points_.colour(i);
-    }
-}
-
-void BatchTracer::light_points_by(const Step& step, std::size_t light, int sample) {
-    const bool shadows = step.job.scene.settings.shadows;
-    shine(step, light, sample);
-    points_.face_light(shadows);
-    if (shadows) cast_shadows(step, step.job.scene.lights[light]);
-    points_.gather();
-}
-
-void BatchTracer::shine(const Step& step, std::size_t light, int sample) {
-    const ShadeScene& scene = step.job.scene;
-    const PreparedLight& source = scene.lights[light];
-    if (LitPoints::at_once(source)) {
-        points_.shine(source);
-        return;
-    }
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-        if (!points_.holds(i)) continue;
-        const std::uint64_t seed = light_seed(scene, step.at.paths[points_.ray(i)].seed, light);
-        points_.shine(i, light_sample(source, points_.position(i), sample, seed));
-    }
-}
-
-void BatchTracer::cast_shadows(const Step& step, const PreparedLight& light) {
-    if (shadow_rays_.size() < points_.size()) {
-        shadow_rays_.resize(points_.size());
-        shadowed_.resize(points_.size());
-    }
-    shadow_count_ = points_.take_shadow_rays(shadow_rays_, shadowed_);
-    find_shares(step, light);
-    std::size_t blocked = 0;
-    for (std::size_t i = 0; i < shadow_count_; ++i) {
-        if (blocked_[i] == 0) continue;
-        points_.block(shadowed_[i]);
-        ++blocked;
-    }
-    step.job.counts.shadow_blocked += blocked;
-}
-
-// What arrives of the light along the shadow rays, which all end at it.
-void BatchTracer::find_shares(const Step& step, const PreparedLight& light) {
-    const ShadeScene& scene = step.job.scene;
-    const std::span<const Ray> rays = std::span(shadow_rays_).first(shadow_count_);
-    count_shadows(step.job.counts, rays.size(), step.depth);
-    if (scene.tints_shadows()) {
-        tint_shares(step, light, rays);
-        return;
-    }
-    blocked_.resize(rays.size());
-    if (light.is_a_point()) {
-        scene.accel->occluded_towards(glm::vec3(light.position), rays, blocked_);
-    } else {
-        scene.accel->occluded(rays, blocked_);
-    }
-}
-
-// Light goes through glass: of the rays that nothing else blocks, what is left by it.
-void BatchTracer::tint_shares(const Step& step, const PreparedLight& light,
-                              std::span<const Ray> rays) {
-    const ShadeScene& scene = step.job.scene;
-    RayQuery query;
-    query.uv = scene.has_maps;
-    if (light.is_a_point()) {
-        scene.accel->cross_towards(glm::vec3(light.position), rays, scene.clear, crossings_, query);
-    } else {
-        scene.accel->cross(rays, scene.clear, crossings_, query);
-    }
-    blocked_ = crossings_.blocked;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (blocked_[i] != 0) continue;
-        const Path& path = step.at.paths[points_.ray(shadowed_[i])];
-        const Interior* interior = step.at.interior_of(path);
-        if (crossings_.of(i).empty() && interior == nullptr) continue;
-        const glm::vec3 share =
-            transmittance_through(scene, rays[i], crossings_.of(i), interior, path.cone.width);
-        blocked_[i] = share == glm::vec3(0.0f) ? 1 : 0;
-        points_.tint(shadowed_[i], share);
     }
 }
 

@@ -7,7 +7,8 @@
 #include "tracer/shade/boundary.h"
 #include "tracer/shade/branches.h"
 #include "tracer/shade/eye_ray.h"
-#include "tracer/shade/light_sample.h"
+#include "tracer/shade/generation.h"
+#include "tracer/shade/light_pass.h"
 #include "tracer/shade/lit_points.h"
 #include "tracer/shade/ray_counts.h"
 #include "tracer/shade/shade_scene.h"
@@ -39,37 +40,6 @@ public:
                const std::stop_token& stop = {});
 
 private:
-    // What comes along a ray: passed * colour. A cache line, so that none is fetched in vain.
-    struct alignas(64) Path {
-        glm::vec3 share{1.0f};     // of what comes along it, in the colour at its parent's end
-        std::uint32_t parent = 0;  // the path at whose end it begins; an eye ray's number
-        RayCone cone;              // at its origin, then at its end
-        float weight = 1.0f;       // the most that it can add to its pixel
-        std::uint32_t interior = kNoInterior;
-        std::uint64_t seed = 0;  // of what is random at its end
-        glm::vec3 passed{1.0f};  // what absorption leaves on its way
-        glm::vec3 colour{0.0f};  // that leaves its end
-    };
-    static_assert(sizeof(Path) == 64);
-    static constexpr std::uint32_t kNoInterior = 0xffffffffu;  // outside of everything
-
-    // All rays of one depth that are there at a time, in the order in which they left.
-    struct Generation {
-        LargeArray<Path> paths;
-        LargeArray<Ray> rays;                 // empty for eye rays, which have theirs already
-        LargeArray<std::uint8_t> directions;  // groups of rays that travel together; likewise
-        std::vector<Interior> interiors;      // of those inside of something
-        std::vector<std::uint32_t> order;     // in which they are followed
-
-        [[nodiscard]] const Interior* interior_of(const Path& path) const {
-            return path.interior == kNoInterior ? nullptr : &interiors[path.interior];
-        }
-        void clear();
-        // So many rays more, all of which is to be set: clearing it takes its time.
-        void add(std::size_t count);
-        void put_inside(Path& path, const Interior& interior);
-    };
-
     // What one call of trace() is about.
     struct Job {
         const ShadeScene& scene;
@@ -91,7 +61,7 @@ private:
     Generation& generation(int depth);
     void begin(const EyeRays& eyes);
     // All but the share.
-    static void set_begun(Path& path, std::uint32_t parent, const RayCone& cone, float weight,
+    static void set_begun(RayPath& path, std::uint32_t parent, const RayCone& cone, float weight,
                           std::uint64_t seed);
     void follow(const Job& job, int depth);
     void follow_portion(const Step& step, std::span<const std::uint32_t> portion);
@@ -101,21 +71,16 @@ private:
     void intersect_groups(const Step& step);
     void note_first_hits(const Job& job);
     void arrive(const Step& step, int hidden, const Arrivals::Block& block);
-    void arrive_simply(const Step& step, Path& path, const PreparedMaterial& material,
+    void arrive_simply(const Step& step, RayPath& path, const PreparedMaterial& material,
                        std::size_t i, std::size_t point);
     void arrive(const Step& step, int hidden, const FoundHit& found, std::size_t i,
                 std::size_t point);
-    static void see_sky(const Step& step, Path& path, const Ray& ray);
+    static void see_sky(const Step& step, RayPath& path, const Ray& ray);
     void send_branches(const Step& step, std::uint32_t from, const ShadingPoint& point,
                        const Boundary& boundary);
     void want_mirrored(const Step& step, std::size_t point, const PreparedMaterial& material);
     void send_mirrored(const Step& step);
     void light_points(const Step& step);
-    void light_points_by(const Step& step, std::size_t light, int sample);
-    void shine(const Step& step, std::size_t light, int sample);
-    void cast_shadows(const Step& step, const PreparedLight& light);
-    void find_shares(const Step& step, const PreparedLight& light);
-    void tint_shares(const Step& step, const PreparedLight& light, std::span<const Ray> rays);
 
     std::deque<Generation> generations_;  // by depth - 1
 
@@ -144,12 +109,7 @@ private:
         float weight = 0.0f;  // the ray's
     };
     std::vector<Mirrored> mirrored_;
-    // As many as there are points at least: the first shadow_count_ are in use.
-    std::vector<Ray> shadow_rays_;
-    std::vector<std::uint32_t> shadowed_;  // the points of these
-    std::size_t shadow_count_ = 0;
-    std::vector<std::uint8_t> blocked_;
-    Crossings crossings_;
+    LightPass light_pass_;
 };
 
 }  // namespace raypick
