@@ -106,8 +106,8 @@ KnownPart part_at(const ShadeScene& scene, const Hit& hit) {
     if (known.kind == SurfaceKind::triangle) {
         known.mesh = &scene.scene->meshes[std::get<MeshInstance>(known.object->shape).mesh];
     }
-    known.simple = !material.has_maps && !(scene.has_bodies && material.fills) &&
-                   (!material.branches || material.only_mirrors);
+    // What bounds a body sends rays through it.
+    known.simple = !material.has_maps && (!material.branches || material.only_mirrors);
     return known;
 }
 
