@@ -12,20 +12,25 @@
 namespace raypick {
 namespace {
 
-// Slivers and large ones, flat and smooth, some with normals that point the wrong way.
+// Slivers and large ones, flat and smooth, some with normals that point the wrong way, and some in
+// the planes of the axes, whose zeros have signs.
 Scene triangles(double scale) {
     MeshData soup = soup_data(3, 300, 0.8);
     MeshData smooth = ball_data(3);
     smooth.normals = smooth.positions;
     smooth.normals[5] = -smooth.normals[5];
     smooth.normals[9] = glm::vec3(0.0f);
-    for (MeshData* data : {&soup, &smooth}) {
+    MeshData planes;
+    planes.positions = {{-1, 0, 1}, {1, 0, 1}, {1, -0.0f, -1}, {0, 1, 1}, {-0.0f, -1, 1}};
+    planes.triangles = {{0, 1, 2}, {0, 2, 1}, {3, 4, 2}, {4, 3, 2}, {0, 1, 3}, {1, 0, 4}};
+    for (MeshData* data : {&soup, &smooth, &planes}) {
         for (glm::vec3& p : data->positions)
             p *= static_cast<float>(scale);
     }
     Scene scene;
     place_mesh(scene, soup);
     place_mesh(scene, smooth);
+    place_mesh(scene, planes);
     return scene;
 }
 

@@ -66,7 +66,7 @@ private:
     HWY_INLINE V3 of_ray3(std::size_t first, std::size_t i) const {
         return {of_ray(first, i), of_ray(first + 1, i), of_ray(first + 2, i)};
     }
-    HWY_INLINE void store(std::size_t first, std::size_t i, const V3& a, float more = 0.0f) const {
+    HWY_INLINE void store(std::size_t first, std::size_t i, const V3& a, float more = -0.0f) const {
         const auto put = [&](std::size_t row, V v) HWY_ATTR {
             const auto rounded = hn::DemoteTo(kFloats, v);
             hn::StoreU(hn::Add(rounded, hn::Set(kFloats, more)), kFloats,
@@ -194,7 +194,7 @@ void TriangleSurfaces::add(std::size_t lane, const Mesh& mesh, const Hit& hit) {
     in[kV * kLanes] = hit.uv.y;
 }
 
-std::uint32_t TriangleSurfaces::find(SurfaceRows& rows) {
+std::uint32_t TriangleSurfaces::find(SurfaceRows& rows) const {
     const std::uint32_t far = HWY_DYNAMIC_DISPATCH(find_triangles)(in_, rows);
     return ~far & ((1u << rows.count) - 1u);
 }

@@ -1,7 +1,9 @@
 // Surface points on triangles, many at once.
 #pragma once
 
+#include "tracer/accel/surface.h"
 #include "tracer/accel/surface_rows.h"
+#include "tracer/scene/scene.h"
 
 #include <array>
 #include <cstddef>
@@ -20,7 +22,7 @@ public:
     void add(std::size_t lane, const Mesh& mesh, const Hit& hit);
     // Sets the points of the rows' hits, all of which have been added. Returns bits of those so
     // near an edge that they want a closer look: set_surface_point's.
-    std::uint32_t find(SurfaceRows& rows);
+    std::uint32_t find(SurfaceRows& rows) const;
 
     // One float of each hit goes into each of these rows: corners, their normals (0 where there are
     // none) and uv.
