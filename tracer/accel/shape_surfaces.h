@@ -1,7 +1,9 @@
 // Surface points on spheres and rectangles, many at once.
 #pragma once
 
+#include "tracer/accel/surface.h"
 #include "tracer/accel/surface_rows.h"
+#include "tracer/scene/scene.h"
 
 #include <array>
 #include <cstddef>

@@ -47,7 +47,7 @@ public:
 
     // Sets the results, as many, to what `eyes` bring back, and adds the rays shot to `counts`.
     // Rays that lie side by side in the image should be so here. Once `stop` is requested the
-    // results are worthless.
+    // results are worthless, if they are set at all.
     void trace(const EyeRays& eyes, TracedRays& results, RayCounts& counts,
                const std::stop_token& stop) const;
     // What they hit, without colour.

@@ -49,6 +49,7 @@ void trace_blocks(const PixelTracer& tracer, int step, TilePart& part,
         samples.push_back(block_sample(part.tile.in_image(block), step, tracer.size()));
     TracedRays traced(blocks.size(), part.has_all());
     tracer.trace(tracer.centre_rays(samples).all(), traced, part.rays, stop);
+    if (stop.stop_requested()) return;
     for (std::size_t i = 0; i < blocks.size(); ++i)
         part.set(part.image.size.index(blocks[i]), traced, i);
 }
@@ -64,6 +65,7 @@ void trace_centres(const PixelTracer& tracer, const CoarseImage* coarse, TilePar
     }
     TracedRays traced(pixels.size(), part.has_all());
     tracer.trace(centre_rays(tracer, tile, pixels).all(), traced, part.rays, stop);
+    if (stop.stop_requested()) return;
     for (std::size_t i = 0; i < pixels.size(); ++i)
         part.set(part.image.size.index(pixels[i]), traced, i);
 }
@@ -73,6 +75,7 @@ void look_at_centres(const PixelTracer& tracer, TilePart& part, const std::stop_
     const std::vector<Pixel> pixels = pixels_in_blocks(part.image.size);
     TracedRays seen(pixels.size(), true);
     tracer.look(centre_rays(tracer, part.tile, pixels).all(), seen, stop);
+    if (stop.stop_requested()) return;
     for (std::size_t i = 0; i < pixels.size(); ++i)
         part.set_hit(part.image.size.index(pixels[i]), seen.hits[i], seen.normals[i]);
 }

@@ -12,7 +12,7 @@
 
 namespace raypick {
 
-// What follows is worthless once `stop` is requested.
+// What follows is worthless once `stop` is requested, if it is set at all.
 
 // One ray for each block of `step` x `step` pixels, of a tile of the coarse image.
 void trace_blocks(const PixelTracer& tracer, int step, TilePart& part, const std::stop_token& stop);

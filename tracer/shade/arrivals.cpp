@@ -3,7 +3,6 @@
 #include "tracer/accel/local_point.h"
 
 #include <bit>
-#include <variant>
 
 namespace raypick {
 

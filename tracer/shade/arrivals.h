@@ -6,6 +6,8 @@
 #include "tracer/accel/triangle_surfaces.h"
 #include "tracer/shade/shade_scene.h"
 
+#include <glm/vec3.hpp>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -38,11 +40,11 @@ public:
     [[nodiscard]] const KnownPart& part(const Block& block, std::size_t lane) const {
         return parts_[block.part[lane]];
     }
+    // Sets what find_surface says of the hit in this lane.
     void set_found(const Block& block, std::size_t lane, FoundHit& found);
 
 private:
-    // What set_surface_point alone knows is worked out one by one.
-    static constexpr std::size_t kKinds = 4;  // of KnownPart
+    static constexpr std::size_t kKinds = 4;  // of SurfaceKind
     struct Gathered {
         Block block;
         bool handed_on = true;
@@ -60,7 +62,7 @@ private:
     TriangleSurfaces triangles_;
     ShapeSurfaces spheres_;
     ShapeSurfaces rectangles_;
-    std::array<SurfacePoint, kLanes> others_;
+    std::array<SurfacePoint, kLanes> others_;  // what set_surface_point alone knows
     // The triangle whose derivatives were worked out last: rays side by side mostly hit the same.
     struct Derivatives {
         const Object* object = nullptr;

@@ -13,8 +13,6 @@
 #include "tracer/shade/ray_counts.h"
 #include "tracer/shade/shade_scene.h"
 
-#include <glm/vec3.hpp>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -35,7 +33,8 @@ namespace raypick {
 class BatchTracer {
 public:
     // Sets the results, which are as many, to what trace() finds for `eyes`, and adds the rays to
-    // `counts`. Once `stop` is requested no more rays are shot, and the results are worthless.
+    // `counts`. Once `stop` is requested no more rays are shot, and the results are worthless,
+    // if they are set at all.
     void trace(const ShadeScene& scene, const EyeRays& eyes, TracedRays& results, RayCounts& counts,
                const std::stop_token& stop = {});
 

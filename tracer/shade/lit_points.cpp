@@ -1,6 +1,5 @@
 #include "tracer/shade/lit_points.h"
 
-#include "tracer/accel/hit.h"
 #include "tracer/shade/lit_point.h"
 
 #include <algorithm>

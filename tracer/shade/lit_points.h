@@ -4,8 +4,8 @@
 #include "tracer/accel/lane_rows.h"
 #include "tracer/accel/surface_rows.h"
 #include "tracer/geometry/ray.h"
-#include "tracer/shade/boundary.h"
 #include "tracer/shade/light_sample.h"
+#include "tracer/shade/textured.h"
 
 #include <glm/vec3.hpp>
 
