@@ -1,13 +1,12 @@
 #include "tracer/accel/shape_surfaces.h"
 
-#include <limits>
 #include <variant>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tracer/accel/shape_surfaces.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.
-#include "tracer/accel/simd/double_vectors-inl.h"
+#include "tracer/accel/simd/surface_lanes-inl.h"
 
 #include <hwy/highway.h>
 
@@ -18,70 +17,34 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 namespace {
 
-// The steps are those of surface.cpp and local_point.cpp one by one, in double, so that no bit
-// differs.
-HWY_INLINE DoubleVector number(double x) {
-    return hn::Set(Doubles(), x);
-}
-HWY_INLINE DoubleVector largest(const DoubleVector3& a) {
-    const DoubleVector3 s = size(a);
-    return larger(larger(s.x, s.y), s.z);
-}
 // Of std.
 HWY_INLINE DoubleVector clamp(DoubleVector x, DoubleVector low, DoubleVector high) {
     return hn::IfThenElse(hn::Lt(x, low), low, smaller(x, high));
 }
 
-// As many hits as a vector holds, from lane i on.
-class Lanes {
+// Of the shapes, as of_ray.
+class ShapeLanes : public SurfaceLanes {
 public:
-    HWY_INLINE Lanes(const ShapeSurfaces::Inputs& in, SurfaceRows& rows, std::size_t i)
-        : in_(in), rows_(rows), i_(i) {}
+    HWY_INLINE ShapeLanes(const ShapeSurfaces::Inputs& in, SurfaceRows& rows, std::size_t i)
+        : SurfaceLanes(rows, i), first_(&in.row[i]) {}
 
     HWY_INLINE DoubleVector of_shape(std::size_t row) const {
-        return hn::LoadU(Doubles(), &in_.row[row * SurfaceRows::kLanes + i_]);
+        return hn::LoadU(Doubles(), first_ + row * SurfaceRows::kLanes);
     }
     HWY_INLINE DoubleVector3 of_shape3(std::size_t first) const {
         return {of_shape(first), of_shape(first + 1), of_shape(first + 2)};
     }
-    HWY_INLINE DoubleVector of_ray(std::size_t row) const {
-        const hn::Rebind<float, Doubles> f;
-        return hn::PromoteTo(Doubles(), hn::LoadU(f, &rows_.row[row * SurfaceRows::kLanes + i_]));
-    }
-    HWY_INLINE DoubleVector3 of_ray3(std::size_t first) const {
-        return {of_ray(first), of_ray(first + 1), of_ray(first + 2)};
-    }
 
-    // `magnitude` as in LocalPoint; `normal` is unit.
+    // `normal` is unit.
     HWY_INLINE void store(const DoubleVector3& position, DoubleVector magnitude,
                           const DoubleVector3& normal) const {
-        const DoubleVector3 reach = size(position);
-        const auto bound = [&](DoubleVector along) HWY_ATTR {
-            return hn::Add(hn::Mul(along, number(0x1p-24)),
-                           hn::Mul(hn::Add(along, magnitude), number(0x1p-47)));
-        };
-        store3(SurfaceRows::kPosition, position, -0.0f);
-        store3(SurfaceRows::kError, {bound(reach.x), bound(reach.y), bound(reach.z)},
-               std::numeric_limits<float>::min());
-        store3(SurfaceRows::kGeometric, normal, -0.0f);
-        store3(SurfaceRows::kShading, normal, -0.0f);
+        store_position(position, magnitude);
+        store3(SurfaceRows::kGeometric, normal);
+        store3(SurfaceRows::kShading, normal);
     }
 
 private:
-    HWY_INLINE void store3(std::size_t first, const DoubleVector3& a, float more) const {
-        const hn::Rebind<float, Doubles> f;
-        const auto put = [&](std::size_t row, DoubleVector v) HWY_ATTR {
-            hn::StoreU(hn::Add(hn::DemoteTo(f, v), hn::Set(f, more)), f,
-                       &rows_.row[row * SurfaceRows::kLanes + i_]);
-        };
-        put(first, a.x);
-        put(first + 1, a.y);
-        put(first + 2, a.z);
-    }
-
-    const ShapeSurfaces::Inputs& in_;
-    SurfaceRows& rows_;
-    std::size_t i_;
+    const double* first_;
 };
 
 // sphere_t of local_point.cpp. `f`: from the centre to the origin.
@@ -96,7 +59,7 @@ HWY_INLINE DoubleVector exact_t(const DoubleVector3& f, const DoubleVector3& dir
     return hn::IfThenElse(hn::Gt(squared, number(0.0)), hn::Add(middle, half), t);
 }
 
-HWY_INLINE void find_sphere(const Lanes& lanes) {
+HWY_INLINE void find_sphere(const ShapeLanes& lanes) {
     using In = ShapeSurfaces;
     const DoubleVector3 origin = lanes.of_ray3(SurfaceRows::kOrigin);
     const DoubleVector3 direction = lanes.of_ray3(SurfaceRows::kDirection);
@@ -115,7 +78,7 @@ HWY_INLINE DoubleVector rim_share(DoubleVector rim, DoubleVector area, const Dou
                           number(0.25));
 }
 
-HWY_INLINE void find_rectangle(const Lanes& lanes) {
+HWY_INLINE void find_rectangle(const ShapeLanes& lanes) {
     using In = ShapeSurfaces;
     const DoubleVector zero = number(0.0);
     const DoubleVector one = number(1.0);
@@ -137,8 +100,7 @@ HWY_INLINE void find_rectangle(const Lanes& lanes) {
 
     const DoubleVector away =
         largest(plus(origin, times(lanes.of_ray(SurfaceRows::kT), direction)));
-    const DoubleVector rim = hn::Mul(
-        number(64.0), hn::Add(hn::Mul(away, number(0x1p-24)), hn::Mul(away, number(0x1p-47))));
+    const DoubleVector rim = rim_at(away);
     const DoubleVector area = hn::Sqrt(squared_area);
     const auto within = [&](DoubleVector at, DoubleVector margin)
                             HWY_ATTR { return clamp(at, margin, hn::Sub(one, margin)); };
@@ -152,12 +114,12 @@ HWY_INLINE void find_rectangle(const Lanes& lanes) {
 
 void find_spheres(const ShapeSurfaces::Inputs& in, SurfaceRows& rows) {
     for (std::size_t i = 0; i < rows.count; i += hn::Lanes(Doubles()))
-        find_sphere(Lanes(in, rows, i));
+        find_sphere(ShapeLanes(in, rows, i));
 }
 
 void find_rectangles(const ShapeSurfaces::Inputs& in, SurfaceRows& rows) {
     for (std::size_t i = 0; i < rows.count; i += hn::Lanes(Doubles()))
-        find_rectangle(Lanes(in, rows, i));
+        find_rectangle(ShapeLanes(in, rows, i));
 }
 
 }  // namespace raypick::HWY_NAMESPACE

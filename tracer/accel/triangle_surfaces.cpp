@@ -1,13 +1,12 @@
 #include "tracer/accel/triangle_surfaces.h"
 
-#include <limits>
 #include <variant>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tracer/accel/triangle_surfaces.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.
-#include "tracer/accel/simd/triples-inl.h"
+#include "tracer/accel/simd/surface_lanes-inl.h"
 
 #include <hwy/highway.h>
 
@@ -16,65 +15,49 @@ namespace raypick::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The steps are those of surface.cpp and local_point.cpp one by one, in double, so that no bit
-// differs.
-class TriangleKernel {
+// As many hits as a vector holds, from lane i on.
+class TriangleLanes {
 public:
-    TriangleKernel(const TriangleSurfaces::Inputs& in, SurfaceRows& rows) : in_(in), rows_(rows) {}
+    HWY_INLINE TriangleLanes(const TriangleSurfaces::Inputs& in, SurfaceRows& rows, std::size_t i)
+        : lanes_(rows, i), first_(&in.row[i]) {}
 
     // Returns bits of those that lie far from the edges.
-    HWY_INLINE std::uint32_t run() const {
-        std::uint32_t far = 0;
-        for (std::size_t i = 0; i < rows_.count; i += hn::Lanes(kDoubles))
-            far |= step(i) << i;
-        return far;
+    HWY_INLINE std::uint32_t find() const {
+        using In = TriangleSurfaces;
+        const V3 a = of_triangle3(In::kCorners);
+        const V3 b = of_triangle3(In::kCorners + 3);
+        const V3 c = of_triangle3(In::kCorners + 6);
+        const V3 origin = lanes_.of_ray3(SurfaceRows::kOrigin);
+        const V3 direction = lanes_.of_ray3(SurfaceRows::kDirection);
+        const V u = of_triangle(In::kU);
+        const V v = of_triangle(In::kV);
+        const V3 edge_b = minus(b, a);
+        const V3 edge_c = minus(c, a);
+        const V3 normal = cross(edge_b, edge_c);
+        const V3 q = cross(minus(origin, a), direction);
+        const V scale = hn::Div(number(-1.0), dot(normal, direction));
+        const V3 w = weights(q, edge_b, edge_c, scale, u, v);
+        const V3 met = plus(origin, times(lanes_.of_ray(SurfaceRows::kT), direction));
+        lanes_.store_position(blend(w, a, b, c),
+                              larger(larger(largest(a), largest(b)), largest(c)));
+        store_normals(normal, u, v);
+        return double_bits(is_far(w, edge_b, edge_c, normal, met));
     }
 
 private:
-    using Doubles = hn::CappedTag<double, TriangleSurfaces::kLanes>;
-    using Floats = hn::Rebind<float, Doubles>;
-    using V = hn::Vec<Doubles>;
-    static constexpr Doubles kDoubles{};
-    static constexpr Floats kFloats{};
+    using V = DoubleVector;
+    using V3 = DoubleVector3;
 
-    using V3 = Triple<V>;
-
-    static HWY_INLINE V number(double x) { return hn::Set(kDoubles, x); }
-    static HWY_INLINE V3 unit(const V3& a) {
-        return times(hn::Div(number(1.0), hn::Sqrt(dot(a, a))), a);
-    }
-    static HWY_INLINE V largest(const V3& a) {
-        const V3 s = size(a);
-        return hn::Max(hn::Max(s.x, s.y), s.z);
-    }
     static HWY_INLINE V3 blend(const V3& weights, const V3& a, const V3& b, const V3& c) {
         return plus(plus(times(weights.x, a), times(weights.y, b)), times(weights.z, c));
     }
 
-    static HWY_INLINE V load(const float* row, std::size_t i) {
-        return hn::PromoteTo(kDoubles, hn::LoadU(kFloats, row + i));
+    HWY_INLINE V of_triangle(std::size_t row) const {
+        const hn::Rebind<float, Doubles> f;
+        return hn::PromoteTo(Doubles(), hn::LoadU(f, first_ + row * SurfaceRows::kLanes));
     }
-    HWY_INLINE V of_triangle(std::size_t row, std::size_t i) const {
-        return load(&in_.row[row * SurfaceRows::kLanes], i);
-    }
-    HWY_INLINE V3 of_triangle3(std::size_t first, std::size_t i) const {
-        return {of_triangle(first, i), of_triangle(first + 1, i), of_triangle(first + 2, i)};
-    }
-    HWY_INLINE V of_ray(std::size_t row, std::size_t i) const {
-        return load(&rows_.row[row * SurfaceRows::kLanes], i);
-    }
-    HWY_INLINE V3 of_ray3(std::size_t first, std::size_t i) const {
-        return {of_ray(first, i), of_ray(first + 1, i), of_ray(first + 2, i)};
-    }
-    HWY_INLINE void store(std::size_t first, std::size_t i, const V3& a, float more = -0.0f) const {
-        const auto put = [&](std::size_t row, V v) HWY_ATTR {
-            const auto rounded = hn::DemoteTo(kFloats, v);
-            hn::StoreU(hn::Add(rounded, hn::Set(kFloats, more)), kFloats,
-                       &rows_.row[row * SurfaceRows::kLanes + i]);
-        };
-        put(first, a.x);
-        put(first + 1, a.y);
-        put(first + 2, a.z);
+    HWY_INLINE V3 of_triangle3(std::size_t first) const {
+        return {of_triangle(first), of_triangle(first + 1), of_triangle(first + 2)};
     }
 
     // exact_weights of local_point.cpp.
@@ -93,9 +76,7 @@ private:
     // Rim::is_far of local_point.cpp.
     static HWY_INLINE hn::Mask<Doubles> is_far(const V3& w, const V3& edge_b, const V3& edge_c,
                                                const V3& normal, const V3& met) {
-        const V away = largest(met);
-        const V rim = hn::Mul(
-            number(64.0), hn::Add(hn::Mul(away, number(0x1p-24)), hn::Mul(away, number(0x1p-47))));
+        const V rim = rim_at(largest(met));
         const V3 across = minus(edge_c, edge_b);
         const V longest =
             hn::Max(hn::Max(dot(edge_b, edge_b), dot(edge_c, edge_c)), dot(across, across));
@@ -105,66 +86,32 @@ private:
         return hn::And(hn::Gt(least, number(0.0)), hn::Gt(have, wanted));
     }
 
-    HWY_INLINE void store_normals(std::size_t i, const V3& normal, V u, V v) const {
+    HWY_INLINE void store_normals(const V3& normal, V u, V v) const {
         using In = TriangleSurfaces;
-        store(SurfaceRows::kGeometric, i, unit(normal));
+        lanes_.store3(SurfaceRows::kGeometric, normalize(normal));
         const V3 smooth =
-            blend({hn::Sub(hn::Sub(number(1.0), u), v), u, v}, of_triangle3(In::kNormals, i),
-                  of_triangle3(In::kNormals + 3, i), of_triangle3(In::kNormals + 6, i));
+            blend({hn::Sub(hn::Sub(number(1.0), u), v), u, v}, of_triangle3(In::kNormals),
+                  of_triangle3(In::kNormals + 3), of_triangle3(In::kNormals + 6));
         const auto is_smooth = hn::Gt(dot(smooth, smooth), number(1e-12));
         const auto turns = hn::Lt(dot(smooth, normal), number(0.0));
         const auto choose = [&](V of_smooth, V of_flat) HWY_ATTR {
             const V turned = hn::IfThenElse(turns, hn::Neg(of_smooth), of_smooth);
             return hn::IfThenElse(is_smooth, turned, of_flat);
         };
-        store(SurfaceRows::kShading, i,
-              unit({choose(smooth.x, normal.x), choose(smooth.y, normal.y),
-                    choose(smooth.z, normal.z)}));
+        lanes_.store3(SurfaceRows::kShading,
+                      normalize({choose(smooth.x, normal.x), choose(smooth.y, normal.y),
+                                 choose(smooth.z, normal.z)}));
     }
 
-    HWY_INLINE std::uint32_t step(std::size_t i) const {
-        using In = TriangleSurfaces;
-        const V3 a = of_triangle3(In::kCorners, i);
-        const V3 b = of_triangle3(In::kCorners + 3, i);
-        const V3 c = of_triangle3(In::kCorners + 6, i);
-        const V3 origin = of_ray3(SurfaceRows::kOrigin, i);
-        const V3 direction = of_ray3(SurfaceRows::kDirection, i);
-        const V u = of_triangle(In::kU, i);
-        const V v = of_triangle(In::kV, i);
-        const V3 edge_b = minus(b, a);
-        const V3 edge_c = minus(c, a);
-        const V3 normal = cross(edge_b, edge_c);
-        const V3 q = cross(minus(origin, a), direction);
-        const V scale = hn::Div(number(-1.0), dot(normal, direction));
-        const V3 w = weights(q, edge_b, edge_c, scale, u, v);
-        const V3 met = plus(origin, times(of_ray(SurfaceRows::kT, i), direction));
-
-        const V3 position = blend(w, a, b, c);
-        const V magnitude = hn::Max(hn::Max(largest(a), largest(b)), largest(c));
-        const V3 reach = size(position);
-        const auto bound = [&](V along) HWY_ATTR {
-            return hn::Add(hn::Mul(along, number(0x1p-24)),
-                           hn::Mul(hn::Add(along, magnitude), number(0x1p-47)));
-        };
-        store(SurfaceRows::kPosition, i, position);
-        store(SurfaceRows::kError, i, {bound(reach.x), bound(reach.y), bound(reach.z)},
-              std::numeric_limits<float>::min());
-        store_normals(i, normal, u, v);
-        return bits(is_far(w, edge_b, edge_c, normal, met));
-    }
-
-    static HWY_INLINE std::uint32_t bits(hn::Mask<Doubles> mask) {
-        std::uint8_t bytes[8] = {};
-        hn::StoreMaskBits(kDoubles, mask, bytes);
-        return bytes[0];
-    }
-
-    const TriangleSurfaces::Inputs& in_;
-    SurfaceRows& rows_;
+    SurfaceLanes lanes_;
+    const float* first_;
 };
 
 std::uint32_t find_triangles(const TriangleSurfaces::Inputs& in, SurfaceRows& rows) {
-    return TriangleKernel(in, rows).run();
+    std::uint32_t far = 0;
+    for (std::size_t i = 0; i < rows.count; i += hn::Lanes(Doubles()))
+        far |= TriangleLanes(in, rows, i).find() << i;
+    return far;
 }
 
 }  // namespace raypick::HWY_NAMESPACE
