@@ -57,7 +57,7 @@ std::size_t compare(const Accel& accel, ShapeSurfaces::Kind kind, std::size_t co
 class ShapeSurfacesBy : public OnInstructionSet {};
 
 TEST_P(ShapeSurfacesBy, AreThoseOfSurfacePointToTheBit) {
-    for (const double scale : {1e-4, 1.0, 1e5}) {
+    for (const double scale : {1e-30, 1e-4, 1.0, 1e5}) {
         for (const glm::dvec3& away : {glm::dvec3(0.0), scale * glm::dvec3(3e4, -2e4, 1e4)}) {
             const Accel round = accel_of(spheres(scale, away));
             const Accel flat = accel_of(rectangles(scale, away));

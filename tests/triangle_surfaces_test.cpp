@@ -49,7 +49,7 @@ Compared compare(const Accel& accel, std::size_t count) {
 class TriangleSurfacesBy : public OnInstructionSet {};
 
 TEST_P(TriangleSurfacesBy, AreThoseOfSurfacePointToTheBit) {
-    for (const double scale : {1e-4, 1.0, 1e5}) {
+    for (const double scale : {1e-30, 1e-4, 1.0, 1e5}) {
         const Accel accel = accel_of(triangles(scale));
         EXPECT_GT(compare(accel, 4000).same, 2000u);
         for (const std::size_t count : {0u, 1u, 2u, 3u, 7u, 17u})
