@@ -80,5 +80,36 @@ TEST_P(CameraRays, OfAnyNumber) {
 
 RAYPICK_ON_EACH_INSTRUCTION_SET(CameraRays);
 
+// Of any 4^n in a row that begin at a multiple of it, where no edge cuts the order off.
+TEST(PixelsInSquares, NeighboursInTheOrderAreNeighboursInTheImage) {
+    const std::vector<Pixel> pixels = pixels_in_squares({32, 32});
+    ASSERT_EQ(pixels.size(), 1024u);
+    for (const int side : {4, 8, 16, 32}) {
+        const auto count = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+        for (std::size_t first = 0; first < pixels.size(); first += count) {
+            const Pixel corner = pixels[first];
+            EXPECT_EQ(corner.row % side, 0);
+            EXPECT_EQ(corner.col % side, 0);
+            for (std::size_t i = first; i < first + count; ++i) {
+                EXPECT_EQ(pixels[i].row / side, corner.row / side);
+                EXPECT_EQ(pixels[i].col / side, corner.col / side);
+            }
+        }
+    }
+}
+
+TEST(PixelsInSquares, EachPixelIsThereOnceWhateverTheSize) {
+    for (const ImageSize size : {ImageSize{1, 1}, {1, 7}, {9, 1}, {3, 5}, {33, 33}, {37, 101}}) {
+        std::vector<int> times(size.pixel_count(), 0);
+        for (const Pixel& pixel : pixels_in_squares(size)) {
+            ASSERT_TRUE(size.contains(pixel));
+            ++times[size.index(pixel)];
+        }
+        EXPECT_EQ(std::count(times.begin(), times.end(), 1),
+                  static_cast<std::ptrdiff_t>(times.size()));
+    }
+    EXPECT_TRUE(pixels_in_squares({0, 5}).empty());
+}
+
 }  // namespace
 }  // namespace raypick

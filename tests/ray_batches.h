@@ -13,7 +13,7 @@
 
 namespace raypick {
 
-// Rays side by side, in blocks of 16 x 4 pixels, from outside of the scene and from within.
+// Rays side by side, in squares of pixels, from outside of the scene and from within.
 inline std::vector<Ray> coherent_rays(const Bounds& bounds, ImageSize size, Projection projection,
                                       std::uint64_t seed) {
     Random random(seed);
@@ -29,14 +29,8 @@ inline std::vector<Ray> coherent_rays(const Bounds& bounds, ImageSize size, Proj
         camera.near = 1e-3 * static_cast<double>(glm::length(bounds.extent()));
         camera.height = 1.5 * static_cast<double>(glm::length(bounds.extent()));
         const RayGenerator generator(camera, size);
-        for (int row = 0; row + 4 <= size.rows; row += 4) {
-            for (int col = 0; col + 16 <= size.cols; col += 16) {
-                for (int i = 0; i < 64; ++i) {
-                    const Pixel pixel{row + i / 16, col + i % 16};
-                    rays.push_back(generator.ray(pixel_centre(pixel)));
-                }
-            }
-        }
+        for (const Pixel& pixel : pixels_in_squares(size))
+            rays.push_back(generator.ray(pixel_centre(pixel)));
     }
     return rays;
 }

@@ -2,6 +2,7 @@
 
 #include "tests/random.h"
 #include "tracer/accel/surface.h"
+#include "tracer/geometry/pixel.h"
 
 #include <glm/geometric.hpp>
 
@@ -11,21 +12,12 @@ namespace raypick::bench {
 
 namespace {
 
-constexpr int kBlockRows = 4;
-constexpr int kBlockCols = 16;
-
 std::vector<Ray> primary_rays(const Camera& camera, ImageSize size) {
     const RayGenerator generator(camera, size);
     std::vector<Ray> rays;
     rays.reserve(size.pixel_count());
-    for (int top = 0; top < size.rows; top += kBlockRows) {
-        for (int left = 0; left < size.cols; left += kBlockCols) {
-            for (int row = top; row < std::min(size.rows, top + kBlockRows); ++row) {
-                for (int col = left; col < std::min(size.cols, left + kBlockCols); ++col)
-                    rays.push_back(generator.ray(pixel_centre({row, col})));
-            }
-        }
-    }
+    for (const Pixel& pixel : pixels_in_squares(size))
+        rays.push_back(generator.ray(pixel_centre(pixel)));
     return rays;
 }
 

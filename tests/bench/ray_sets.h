@@ -10,7 +10,7 @@
 namespace raypick::bench {
 
 struct RaySets {
-    std::vector<Ray> primary;  // in blocks of 16 x 4 pixels, so that 64 in a row are one block
+    std::vector<Ray> primary;  // 64 in a row are of 8 x 8 pixels: see pixels_in_squares()
     std::vector<Ray> shadow;   // from what the primary rays hit to the view's light, in that order
     std::vector<Ray> mirror;   // from what they hit, in that order
     std::vector<Ray> random;   // from anywhere in the scene's box to anywhere, without order

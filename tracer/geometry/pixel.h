@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 namespace raypick {
 
@@ -45,5 +46,11 @@ struct ImageSize {
 inline ImagePoint pixel_centre(Pixel p) {
     return {p.row + 0.5, p.col + 0.5};
 }
+
+// All pixels in Z-order, but row by row in squares of 4 x 4; the right and the lower edge may cut
+// squares off. Rays through 16, 64 or more of them in a row go much the same way.
+//
+// Source: Morton, "A computer oriented geodetic data base", 1966.
+std::vector<Pixel> pixels_in_squares(ImageSize size);
 
 }  // namespace raypick

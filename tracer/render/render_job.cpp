@@ -254,7 +254,7 @@ TilePart RenderJob::State::begun_part(const Tile& tile, bool first_pass) const {
 
 // The pixels of a tile that take more samples.
 std::vector<Pixel> RenderJob::State::sampled_pixels(const Tile& tile) const {
-    std::vector<Pixel> pixels = pixels_in_blocks(tile.size());
+    std::vector<Pixel> pixels = pixels_in_squares(tile.size());
     if (refining.empty()) return pixels;
     std::erase_if(pixels, [&](const Pixel& pixel) {
         return refining[image.size.index(tile.in_image(pixel))] == 0;

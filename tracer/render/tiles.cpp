@@ -48,24 +48,6 @@ std::vector<Tile> tiles_from_centre(ImageSize size, int side) {
     return tiles;
 }
 
-std::vector<Pixel> pixels_in_blocks(ImageSize size) {
-    constexpr int kBlockRows = 4;
-    constexpr int kBlockCols = 16;
-    std::vector<Pixel> pixels;
-    pixels.reserve(size.pixel_count());
-    for (int top = 0; top < size.rows; top += kBlockRows) {
-        for (int left = 0; left < size.cols; left += kBlockCols) {
-            const Tile block{top, std::min(top + kBlockRows, size.rows), left,
-                             std::min(left + kBlockCols, size.cols)};
-            for (int row = block.row_begin; row < block.row_end; ++row) {
-                for (int col = block.col_begin; col < block.col_end; ++col)
-                    pixels.push_back({row, col});
-            }
-        }
-    }
-    return pixels;
-}
-
 TilePart::TilePart(const Tile& where, Channels channels)
     : tile(where), image(make_image(where.size(), channels)), broken(image.size.pixel_count(), 0) {}
 

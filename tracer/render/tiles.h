@@ -32,9 +32,6 @@ struct Tile {
 // All tiles of an image, those nearest to its centre first.
 std::vector<Tile> tiles_from_centre(ImageSize size, int side = kTileSize);
 
-// A tile's own pixels in blocks of 16 x 4: rays through the pixels of one go much the same way.
-std::vector<Pixel> pixels_in_blocks(ImageSize size);
-
 // What one thread made of a tile.
 struct TilePart {
     explicit TilePart(const Tile& where, Channels channels = Channels::all);

@@ -22,7 +22,7 @@ std::vector<glm::vec3> corner_colours(const PixelTracer& tracer, const Tile& til
     for (const bool own : {true, false}) {
         std::vector<std::size_t> places;
         EyeRayList eyes;
-        for (const Pixel& pixel : pixels_in_blocks(corners)) {
+        for (const Pixel& pixel : pixels_in_squares(corners)) {
             const Pixel corner = tile.in_image(pixel);
             const bool is_own = (pixel.row < size.rows || corner.row == tracer.size().rows) &&
                                 (pixel.col < size.cols || corner.col == tracer.size().cols);
@@ -42,7 +42,7 @@ std::vector<glm::vec3> corner_colours(const PixelTracer& tracer, const Tile& til
 
 void trace_blocks(const PixelTracer& tracer, int step, TilePart& part,
                   const std::stop_token& stop) {
-    const std::vector<Pixel> blocks = pixels_in_blocks(part.image.size);
+    const std::vector<Pixel> blocks = pixels_in_squares(part.image.size);
     std::vector<Pixel> samples;
     samples.reserve(blocks.size());
     for (const Pixel& block : blocks)
@@ -57,7 +57,7 @@ void trace_blocks(const PixelTracer& tracer, int step, TilePart& part,
 void trace_centres(const PixelTracer& tracer, const CoarseImage* coarse, TilePart& part,
                    const std::stop_token& stop) {
     const Tile& tile = part.tile;
-    std::vector<Pixel> pixels = pixels_in_blocks(part.image.size);
+    std::vector<Pixel> pixels = pixels_in_squares(part.image.size);
     if (coarse != nullptr) {
         std::erase_if(pixels, [&](const Pixel& pixel) {
             return take_sample(*coarse, tile.in_image(pixel), part, part.image.size.index(pixel));
@@ -72,7 +72,7 @@ void trace_centres(const PixelTracer& tracer, const CoarseImage* coarse, TilePar
 
 void look_at_centres(const PixelTracer& tracer, TilePart& part, const std::stop_token& stop) {
     if (!part.has_all()) return;
-    const std::vector<Pixel> pixels = pixels_in_blocks(part.image.size);
+    const std::vector<Pixel> pixels = pixels_in_squares(part.image.size);
     TracedRays seen(pixels.size(), true);
     tracer.look(centre_rays(tracer, part.tile, pixels).all(), seen, stop);
     if (stop.stop_requested()) return;
