@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -40,22 +41,26 @@ std::uint32_t sheared_filter(const TrianglePatch& patch, const Ray& ray, float r
     return TriangleFilter(shear(local)).may_hit(patch, reach, ray.t_max);
 }
 
-// Of no more than 64 rays in one octant.
+// Of no more than 64 rays in one octant, each up to its t_max.
 std::uint32_t groups_filter(const TrianglePatch& patch, std::span<const Ray> rays, float reach) {
     GroupRays group{};
+    GroupLimits limits;
     for (std::size_t i = 0; i < kGroup; ++i) {
         const Ray& ray = rays[std::min(i, rays.size() - 1)];
         for (std::size_t axis = 0; axis < 3; ++axis) {
             group.origin[axis][i] = ray.origin[static_cast<int>(axis)];
             group.direction[axis][i] = ray.direction[static_cast<int>(axis)];
         }
+        limits.t_min[i] = ray.t_min;
+        limits.t_far[i] = ray.t_max;
     }
     group.invert();
-    const GroupSpace space(group, ~RayMask{0} >> (kGroup - rays.size()), 0.0f, reach);
+    const RayMask mask = first_rays(rays.size());
+    const GroupSpace space(group, mask, 0.0f, reach);
     GroupTriangles triangles;
     std::uint32_t left = 0;
     for (std::size_t i = 0; i < patch.triangles; i += kTrianglesAtOnce)
-        left |= set_triangles(space, patch, i, triangles) << i;
+        left |= set_triangles(space, limits, mask, patch, i, triangles) << i;
     return left & ((1u << patch.triangles) - 1u);
 }
 
@@ -172,6 +177,54 @@ TEST_P(TriangleFilters, RuleNoHitOut) {
         }
     }
     EXPECT_GT(hits, 10000);
+}
+
+// Rays side by side with this one, each with an origin of its own, in its octant.
+std::vector<Ray> bundle_around(const Ray& ray, double spread, Random& random) {
+    std::vector<Ray> rays{ray};
+    while (rays.size() < 64) {
+        Ray other = ray;
+        other.origin += glm::vec3(spread * random.direction());
+        for (int axis = 0; axis < 3; ++axis) {
+            const double along = ray.direction[axis] + random.between(-0.01, 0.01);
+            other.direction[axis] = std::copysign(static_cast<float>(along), ray.direction[axis]);
+        }
+        rays.push_back(other);
+    }
+    return rays;
+}
+
+TEST_P(TriangleFilters, OfSeveralOriginsRuleNoHitOutButManyOthers) {
+    int hits = 0;
+    int ruled_out = 0;
+    int triangles = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        const double size = std::pow(10.0, static_cast<double>(seed % 5) * 3.0 - 6.0);
+        const double offset = seed % 3 == 0 ? 1000.0 * size : 0.0;
+        SCOPED_TRACE(testing::Message() << "seed " << seed << " size " << size);
+        const Patch patch(some_triangles(seed, 8, size, offset));
+        Random random(seed);
+        for (const Ray& ray : rays_at_triangles(patch, seed, size)) {
+            std::vector<Ray> rays = bundle_around(ray, 0.01 * size, random);
+            std::uint32_t wanted = 0;
+            for (Ray& one : rays) {
+                float last = 0.0f;
+                for (std::uint32_t i = 0; i < patch.only().triangles; ++i)
+                    last = std::max(last, hit_of(patch, i, one).value_or(0.0f));
+                one.t_max = last;  // and no further
+                const std::uint32_t its = hits_of(patch, one);
+                wanted |= its;
+                hits += its != 0 ? 1 : 0;
+            }
+            const std::uint32_t left =
+                HWY_DYNAMIC_DISPATCH(groups_filter)(patch.only(), rays, reach_of(patch, ray));
+            ASSERT_EQ(wanted & ~left, 0u) << to_text(ray);
+            ruled_out += 8 - std::popcount(left);
+            triangles += 8;
+        }
+    }
+    EXPECT_GT(hits, 50000);
+    EXPECT_GT(ruled_out, triangles / 4);
 }
 
 // How often each place of a patch is let through without a hit.

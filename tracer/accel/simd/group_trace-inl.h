@@ -314,7 +314,7 @@ private:
         GroupTriangles triangles;  // NOLINT: not initialised, as it is large
         std::uint32_t left = 0;
         for (std::size_t i = 0; i < patch.triangles; i += kTrianglesAtOnce)
-            left |= set_triangles(space, patch, i, triangles) << i;
+            left |= set_triangles(space, search_.limits_in(space), mask, patch, i, triangles) << i;
         left &= (1u << patch.triangles) - 1u;
         if (!space.course.backwards() && better_ray_by_ray(patch, left, mask)) {
             settle_.judge_patch(searched, space, triangles, patch, mask);

@@ -138,12 +138,44 @@ HWY_INLINE EdgeBounds edge_bounds(const GroupSpace& space, const TriangleVectors
     return bounds;
 }
 
+// Triangles whose boxes some ray of the group may meet before t_far, as a mask; see meet_group().
+HWY_INLINE std::uint32_t meet_boxes(const GroupSpace& space, const PatchCorners& corners,
+                                    float t_far) {
+    const Triangles d;
+    auto near = hn::Set(d, space.t_least());
+    auto far = hn::Set(d, t_far);
+    const auto meet = [&](std::size_t axis, const TriangleFloats& a, const TriangleFloats& b,
+                          const TriangleFloats& c) HWY_ATTR {
+        const auto least = hn::Min(hn::Min(a, b), c);
+        const auto most = hn::Max(hn::Max(a, b), c);
+        const bool negative = space.first[axis] >= 3;
+        const auto to_first = hn::Sub(negative ? most : least, hn::Set(d, space.near_origin[axis]));
+        const auto to_second = hn::Sub(negative ? least : most, hn::Set(d, space.far_origin[axis]));
+        const auto low = hn::Set(d, space.inverse_low[axis]);
+        const auto high = hn::Set(d, space.inverse_high[axis]);
+        near = hn::Max(near, hn::Min(hn::Mul(to_first, low), hn::Mul(to_first, high)));
+        far = hn::Min(far, hn::Max(hn::Mul(to_second, low), hn::Mul(to_second, high)));
+    };
+    meet(0, corners.a.x, corners.b.x, corners.c.x);
+    meet(1, corners.a.y, corners.b.y, corners.c.y);
+    meet(2, corners.a.z, corners.b.z, corners.c.z);
+    return triangle_bits(
+        hn::Le(hn::Mul(near, hn::Set(d, kShrinkGroup)), hn::Mul(far, hn::Set(d, kGrowGroup))));
+}
+
 // Sets the triangles of the patch from `first` on, as many as one instruction takes, and returns
-// those that some ray of the group may meet, as a mask.
-HWY_INLINE std::uint32_t set_triangles(const GroupSpace& space, const TrianglePatch& patch,
-                                       std::size_t first, GroupTriangles& triangles) {
+// those that some ray of the mask may meet, as a mask. With one origin the edges tell that better
+// than the boxes do.
+HWY_INLINE std::uint32_t set_triangles(const GroupSpace& space, const GroupLimits& limits,
+                                       RayMask mask, const TrianglePatch& patch, std::size_t first,
+                                       GroupTriangles& triangles) {
     const Triangles d;
     const PatchCorners corners(patch, first);
+    std::uint32_t met = 0;
+    if (!space.one_origin) {
+        met = meet_boxes(space, corners, farthest(limits, mask));
+        if (met == 0) return 0;
+    }
     const auto& [a, b, c] = corners;
     const TriangleVectors edge_b = b - a;
     const TriangleVectors edge_c = c - a;
@@ -169,7 +201,7 @@ HWY_INLINE std::uint32_t set_triangles(const GroupSpace& space, const TrianglePa
                                  : hn::Add(reach, hn::Set(d, space.origin_rounding));
     hn::Store(height_error_of(edge, from_origin), d, triangles.height_error.data() + first);
     hn::Store(height_growth_of(edge), d, triangles.height_growth.data() + first);
-    if (!space.one_origin) return (1u << kTrianglesAtOnce) - 1u;
+    if (!space.one_origin) return met;
     const TriangleVectors from_a = a - low;
     const TriangleVectors u = cross(b - low, c - b);
     const TriangleVectors v = cross(edge_c, c - low);
