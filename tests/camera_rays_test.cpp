@@ -1,10 +1,12 @@
-// Many rays of a camera at once against one after the other.
+// Many rays of a camera at once against one after the other, and the order of an image's pixels.
 #include "tests/each_instruction_set.h"
 #include "tracer/geometry/camera.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -10,7 +10,7 @@ namespace {
 constexpr int kSmallestSquare = 4;
 
 // Writes the square's pixels to `to` and returns the end of what it wrote.
-Pixel* put_square(const ImageSize& size, Pixel corner, int side, Pixel* to) {
+Pixel* put_square(ImageSize size, Pixel corner, int side, Pixel* to) {
     if (!size.contains(corner)) return to;
     if (side == kSmallestSquare) {
         const Pixel end{std::min(corner.row + side, size.rows),

@@ -48,7 +48,8 @@ inline ImagePoint pixel_centre(Pixel p) {
 }
 
 // All pixels in Z-order, but row by row in squares of 4 x 4; the right and the lower edge may cut
-// squares off. Rays through 16, 64 or more of them in a row go much the same way.
+// squares off. Rays through 16, 64 or more of them in a row go much the same way. Of at most 2^30
+// rows and columns.
 //
 // Source: Morton, "A computer oriented geodetic data base", 1966.
 std::vector<Pixel> pixels_in_squares(ImageSize size);

@@ -312,9 +312,11 @@ private:
     HWY_INLINE void judge_patch(const Searched& searched, const GroupSpace& space,
                                 const TrianglePatch& patch, RayMask mask) {
         GroupTriangles triangles;  // NOLINT: not initialised, as it is large
+        // Asked for with several origins only.
+        const float t_far = space.one_origin ? 0.0f : farthest(search_.limits_in(space), mask);
         std::uint32_t left = 0;
         for (std::size_t i = 0; i < patch.triangles; i += kTrianglesAtOnce)
-            left |= set_triangles(space, search_.limits_in(space), mask, patch, i, triangles) << i;
+            left |= set_triangles(space, t_far, patch, i, triangles) << i;
         left &= (1u << patch.triangles) - 1u;
         if (!space.course.backwards() && better_ray_by_ray(patch, left, mask)) {
             settle_.judge_patch(searched, space, triangles, patch, mask);

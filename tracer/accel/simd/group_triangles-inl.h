@@ -164,17 +164,17 @@ HWY_INLINE std::uint32_t meet_boxes(const GroupSpace& space, const PatchCorners&
 }
 
 // Sets the triangles of the patch from `first` on, as many as one instruction takes, and returns
-// those that some ray of the mask may meet, as a mask. With one origin the edges tell that better
-// than the boxes do.
-HWY_INLINE std::uint32_t set_triangles(const GroupSpace& space, const GroupLimits& limits,
-                                       RayMask mask, const TrianglePatch& patch, std::size_t first,
+// those that some ray of the group may meet before t_far, as a mask. With one origin the edges tell
+// that better than the boxes do. If that is none of the whole patch, they may be left as they were.
+HWY_INLINE std::uint32_t set_triangles(const GroupSpace& space, float t_far,
+                                       const TrianglePatch& patch, std::size_t first,
                                        GroupTriangles& triangles) {
     const Triangles d;
     const PatchCorners corners(patch, first);
     std::uint32_t met = 0;
     if (!space.one_origin) {
-        met = meet_boxes(space, corners, farthest(limits, mask));
-        if (met == 0) return 0;
+        met = meet_boxes(space, corners, t_far);
+        if (met == 0 && kTrianglesAtOnce == TrianglePatch::kMostTriangles) return 0;
     }
     const auto& [a, b, c] = corners;
     const TriangleVectors edge_b = b - a;
