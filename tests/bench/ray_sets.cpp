@@ -6,8 +6,6 @@
 
 #include <glm/geometric.hpp>
 
-#include <algorithm>
-
 namespace raypick::bench {
 
 namespace {

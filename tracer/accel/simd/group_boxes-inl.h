@@ -59,6 +59,28 @@ HWY_INLINE void order_met(const WideNode& node, std::size_t octant, const BoxInt
 #endif
 }
 
+// Where the group's rays enter and leave, along one axis, what lies between each lane's two planes.
+template <class V>
+struct SlabMet {
+    V near_least, near_most;
+    V far_least, far_most;
+};
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE SlabMet<V> meet_slabs(D d, const GroupSpace& space, std::size_t axis,
+                                 const V& first_plane, const V& second_plane) {
+    const auto low = hn::Set(d, space.inverse_low[axis]);
+    const auto high = hn::Set(d, space.inverse_high[axis]);
+    const auto to_first = hn::Sub(first_plane, hn::Set(d, space.near_origin[axis]));
+    const auto to_second = hn::Sub(second_plane, hn::Set(d, space.far_origin[axis]));
+    const auto near_low = hn::Mul(to_first, low);
+    const auto near_high = hn::Mul(to_first, high);
+    const auto far_low = hn::Mul(to_second, low);
+    const auto far_high = hn::Mul(to_second, high);
+    return {hn::Min(near_low, near_high), hn::Max(near_low, near_high), hn::Min(far_low, far_high),
+            hn::Max(far_low, far_high)};
+}
+
 HWY_INLINE void meet_group(const GroupSpace& space, const WideNode& node, float t_min, float t_far,
                            BoxHits& hits) {
     const Boxes d;
@@ -70,21 +92,14 @@ HWY_INLINE void meet_group(const GroupSpace& space, const WideNode& node, float 
         auto last_near = near;
         auto first_far = hn::Set(d, std::numeric_limits<float>::infinity());
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const auto low = hn::Set(d, space.inverse_low[axis]);
-            const auto high = hn::Set(d, space.inverse_high[axis]);
-            const auto to_first = hn::Sub(hn::Load(d, node.planes[space.first[axis]].data() + i),
-                                          hn::Set(d, space.near_origin[axis]));
-            const auto to_second = hn::Sub(hn::Load(d, node.planes[space.second[axis]].data() + i),
-                                           hn::Set(d, space.far_origin[axis]));
-            const auto near_low = hn::Mul(to_first, low);
-            const auto near_high = hn::Mul(to_first, high);
-            const auto far_low = hn::Mul(to_second, low);
-            const auto far_high = hn::Mul(to_second, high);
-            near = hn::Max(near, hn::Min(near_low, near_high));
-            far = hn::Min(far, hn::Max(far_low, far_high));
+            const auto met =
+                meet_slabs(d, space, axis, hn::Load(d, node.planes[space.first[axis]].data() + i),
+                           hn::Load(d, node.planes[space.second[axis]].data() + i));
+            near = hn::Max(near, met.near_least);
+            far = hn::Min(far, met.far_most);
             if (space.one_origin) {
-                last_near = hn::Max(last_near, hn::Max(near_low, near_high));
-                first_far = hn::Min(first_far, hn::Min(far_low, far_high));
+                last_near = hn::Max(last_near, met.near_most);
+                first_far = hn::Min(first_far, met.far_least);
             }
         }
         near = hn::Mul(near, hn::Set(d, kShrinkGroup));

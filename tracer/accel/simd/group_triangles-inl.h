@@ -149,12 +149,10 @@ HWY_INLINE std::uint32_t meet_boxes(const GroupSpace& space, const PatchCorners&
         const auto least = hn::Min(hn::Min(a, b), c);
         const auto most = hn::Max(hn::Max(a, b), c);
         const bool negative = space.first[axis] >= 3;
-        const auto to_first = hn::Sub(negative ? most : least, hn::Set(d, space.near_origin[axis]));
-        const auto to_second = hn::Sub(negative ? least : most, hn::Set(d, space.far_origin[axis]));
-        const auto low = hn::Set(d, space.inverse_low[axis]);
-        const auto high = hn::Set(d, space.inverse_high[axis]);
-        near = hn::Max(near, hn::Min(hn::Mul(to_first, low), hn::Mul(to_first, high)));
-        far = hn::Min(far, hn::Max(hn::Mul(to_second, low), hn::Mul(to_second, high)));
+        const auto met =
+            meet_slabs(d, space, axis, negative ? most : least, negative ? least : most);
+        near = hn::Max(near, met.near_least);
+        far = hn::Min(far, met.far_most);
     };
     meet(0, corners.a.x, corners.b.x, corners.c.x);
     meet(1, corners.a.y, corners.b.y, corners.c.y);
