@@ -105,28 +105,6 @@ TEST_P(AccelCrowds, MasksAndSidesOfObjectsInEachOthersWay) {
     }
 }
 
-// All in one octant, so that they go as a group, from everywhere: a leaf is met by one or two. What
-// stands in one instance's space would be elsewhere in the next one's.
-TEST_P(AccelCrowds, FewRaysOfAGroupInEachLeaf) {
-    Random random(3);
-    Scene scene;
-    place_mesh(scene, ball_data(4));
-    for (int i = 0; i < 12; ++i) {
-        place(scene, MeshInstance{0}, kNoMaterial,
-              translate(4.0 * random.point(glm::dvec3(-1.0), glm::dvec3(1.0))) *
-                  rotate(random.between(0.0, 360.0), random.direction()) *
-                  scale(random.point(glm::dvec3(0.2), glm::dvec3(2.0))));
-    }
-    const Accel accel = accel_of(scene);
-    std::vector<Ray> rays;
-    while (rays.size() < std::size_t{64} * 256) {
-        const glm::vec3 direction = glm::abs(glm::vec3(random.direction()));
-        const glm::vec3 through(random.point(glm::dvec3(-4.0), glm::dvec3(4.0)));
-        rays.push_back({through - 2.0f * direction, direction});
-    }
-    expect_as_one_by_one(accel, rays);
-}
-
 // More than a byte can count, and nothing tells them apart.
 TEST_P(AccelCrowds, TrianglesInOnePlace) {
     for (const std::uint32_t count : {8u, 9u, 300u}) {
