@@ -1,8 +1,10 @@
 #include "tracer/accel/local_point.h"
 
+#include "tracer/geometry/absolute.h"
 #include "tracer/geometry/axis_frame.h"
 #include "tracer/geometry/rectangle.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -231,7 +233,7 @@ glm::dvec2 exact_weights(const ObjectRay& ray, const Hit& hit, const glm::dvec3&
     const glm::dvec2 uv{glm::dot(q, edge_c) * scale, -glm::dot(q, edge_b) * scale};
     // A ray along the plane gives anything.
     const glm::dvec2 known(hit.uv);
-    const glm::dvec2 gap = glm::abs(uv - known);
+    const glm::dvec2 gap = absolute(uv - known);
     return gap.x < 1e-3 && gap.y < 1e-3 ? uv : known;
 }
 
@@ -296,7 +298,7 @@ struct LocalPointOf {
         const double height = glm::dot(n, p) + plane.d;
         LocalPoint point = flat_point(p - n * (height / glm::dot(n, n)), n, largest_coordinate(p));
         // u and v are the coordinates other than the one that the normal is longest along.
-        const glm::dvec3 length = glm::abs(n);
+        const glm::dvec3 length = absolute(n);
         int across = 2;
         if (length.x > length.y && length.x > length.z) {
             across = 0;

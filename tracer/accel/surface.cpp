@@ -1,6 +1,7 @@
 #include "tracer/accel/surface.h"
 
 #include "tracer/accel/local_point.h"
+#include "tracer/geometry/absolute.h"
 
 #include <glm/geometric.hpp>
 
@@ -50,27 +51,26 @@ public:
     // room to spare) on the way from the ray through the object's space and back. A secondary ray's
     // own intersection goes the same way, and must find the surface behind it.
     [[nodiscard]] glm::dvec3 rounding_bound(double magnitude, const glm::dvec3& position) const {
-        const glm::dvec3 size = glm::abs(position);
+        const glm::dvec3 size = absolute(position);
         return size * 0x1p-24 + reach(magnitude, size) * 0x1p-47;
     }
 
     // The largest of rounding_bound(0, position).
     [[nodiscard]] double largest_rounding_bound(const glm::dvec3& position) const {
         if (moves_) return largest_component(rounding_bound(0.0, position));
-        const double size = largest_component(glm::abs(position));
+        const double size = largest_component(absolute(position));
         return size * 0x1p-24 + size * 0x1p-47;
     }
 
 private:
     [[nodiscard]] glm::dvec3 reach(double magnitude, const glm::dvec3& size) const {
         if (!moves_) return size + magnitude;
-        const auto absolute = [](const glm::dmat3& m) {
-            return glm::dmat3(glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2]));
+        const auto sizes = [](const glm::dmat3& m) {
+            return glm::dmat3(absolute(m[0]), absolute(m[1]), absolute(m[2]));
         };
-        const glm::dvec3 inside = absolute(object_from_world_.linear) * size +
-                                  glm::abs(object_from_world_.translation) + magnitude;
-        return absolute(world_from_object_.linear) * inside +
-               glm::abs(world_from_object_.translation);
+        const glm::dvec3 inside = sizes(object_from_world_.linear) * size +
+                                  absolute(object_from_world_.translation) + magnitude;
+        return sizes(world_from_object_.linear) * inside + absolute(world_from_object_.translation);
     }
 
     const Transform& world_from_object_;

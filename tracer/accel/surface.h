@@ -2,10 +2,10 @@
 #pragma once
 
 #include "tracer/accel/hit.h"
+#include "tracer/geometry/absolute.h"
 #include "tracer/geometry/ray.h"
 #include "tracer/scene/scene.h"
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
@@ -71,7 +71,7 @@ inline glm::vec3 offset_origin(const SurfacePoint& point, const glm::vec3& direc
                                  ? point.geometric_normal
                                  : -point.geometric_normal;
     // Twice the bound: once for the point, once for the rounding of the sum.
-    const float distance = 2.0f * glm::dot(glm::abs(normal), point.position_error);
+    const float distance = 2.0f * glm::dot(absolute(normal), point.position_error);
     const glm::vec3 origin = point.position + distance * normal;
     return {next_float(origin.x, normal.x), next_float(origin.y, normal.y),
             next_float(origin.z, normal.z)};

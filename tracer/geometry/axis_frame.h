@@ -1,7 +1,8 @@
 // The frame in which the angles of disks, cones and tori are measured.
 #pragma once
 
-#include <glm/common.hpp>
+#include "tracer/geometry/absolute.h"
+
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
@@ -29,7 +30,7 @@ struct AxisFrame {
 inline AxisFrame axis_frame(const glm::dvec3& axis) {
     AxisFrame frame;
     frame.y = glm::normalize(axis);
-    const glm::dvec3 a = glm::abs(frame.y);
+    const glm::dvec3 a = absolute(frame.y);
     glm::dvec3 least{0.0, 0.0, 1.0};
     if (a.x <= a.y && a.x <= a.z) {
         least = {1.0, 0.0, 0.0};

@@ -1,6 +1,7 @@
 // From double to float, away from the inside.
 #pragma once
 
+#include "tracer/geometry/absolute.h"
 #include "tracer/geometry/bounds.h"
 
 #include <glm/common.hpp>
@@ -25,7 +26,7 @@ inline float round_up(double x) {
 
 // A box in float that holds the one in double, whose corners were rounded (to double) themselves.
 inline Bounds rounded_outwards(const glm::dvec3& low, const glm::dvec3& high) {
-    const glm::dvec3 slack = 1e-15 * glm::max(glm::abs(low), glm::abs(high));
+    const glm::dvec3 slack = 1e-15 * glm::max(absolute(low), absolute(high));
     Bounds bounds;
     for (int axis = 0; axis < 3; ++axis) {
         bounds.min[axis] = round_down(low[axis] - slack[axis]);

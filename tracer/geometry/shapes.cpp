@@ -1,5 +1,6 @@
 #include "tracer/geometry/shapes.h"
 
+#include "tracer/geometry/absolute.h"
 #include "tracer/geometry/sphere_uv.h"
 #include "tracer/geometry/triangle_test.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 // The coordinates other than the one along which the plane's normal is longest.
 glm::dvec2 plane_uv(const Plane& plane, const glm::dvec3& p) {
-    const glm::dvec3 n = glm::abs(plane.normal);
+    const glm::dvec3 n = absolute(plane.normal);
     if (n.x > n.y && n.x > n.z) return {p.y, p.z};
     return n.y >= n.z ? glm::dvec2(p.x, p.z) : glm::dvec2(p.x, p.y);
 }

@@ -6,9 +6,9 @@
 // nor the first corner changes a bit of t.
 #pragma once
 
+#include "tracer/geometry/absolute.h"
 #include "tracer/geometry/shapes.h"
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
@@ -30,7 +30,7 @@ struct ShearedRay {
 };
 
 inline ShearedRay shear(const ObjectRay& ray) {
-    const glm::dvec3 d = glm::abs(ray.direction);
+    const glm::dvec3 d = absolute(ray.direction);
     ShearedRay s;
     s.origin = ray.origin;
     s.kz = d.x > d.y ? (d.x > d.z ? 0 : 2) : (d.y > d.z ? 1 : 2);

@@ -1,5 +1,7 @@
 #include "tracer/scene/texture.h"
 
+#include "tracer/geometry/absolute.h"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -239,7 +241,7 @@ float even_share(const glm::vec2& t, glm::vec2 a, glm::vec2 b) {
         std::swap(a, b);
     }
     const Taps taps = taps_along(longer, shorter, 0.0f);
-    const glm::vec2 box = glm::abs(a) / static_cast<float>(taps.count) + glm::abs(b);
+    const glm::vec2 box = absolute(a) / static_cast<float>(taps.count) + absolute(b);
     if (!(box.x < kLargestCoordinate && box.y < kLargestCoordinate)) return 0.5f;
     float sum = 0.0f;
     for (int i = 0; i < taps.count; ++i) {

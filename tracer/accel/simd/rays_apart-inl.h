@@ -191,8 +191,7 @@ private:
         const Ray& from = rays_[way.ray];
         way.t_min = from.t_min;
         way.steepest = largest_of(from.direction);
-        way.slabs.emplace(from.origin, from.direction,
-                          kDoubleSlop * std::max(largest_of(from.origin), state_.reach));
+        way.slabs.emplace(from, kDoubleSlop * std::max(largest_of(from.origin), state_.reach));
         way.space.reset();
         way.stack.count = 0;
         way.is_last = false;
@@ -384,12 +383,11 @@ private:
         const auto object = [&](std::size_t i) HWY_ATTR {
             return way.instance->members[leaf.elements[i].member].object;
         };
-        const SphereFilter filter(rays_[way.ray]);
         for (std::size_t i = 0; i < leaf.spheres; i += SphereFilter::kAtOnce) {
             const LeafElements some{leaf.rows + joined.stride * i, joined.stride,
                                     std::min(SphereFilter::kAtOnce, leaf.spheres - i)};
             RayVerdict verdict;
-            filter.judge(some, search_.limits.t_far[way.ray], {}, verdict);
+            SphereFilter(rays_[way.ray]).judge(some, search_.limits.t_far[way.ray], {}, verdict);
             each_bit(verdict.may, [&](std::size_t k) HWY_ATTR {
                 settle_element<SphereSet>(way, object(i + k), leaf.elements[i + k].primitive,
                                           verdict, k);

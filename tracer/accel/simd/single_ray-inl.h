@@ -13,8 +13,7 @@
 #include "tracer/accel/simd/sphere_filter-inl.h"
 #include "tracer/accel/simd/triangle_filter-inl.h"
 #include "tracer/accel/simd/wide_traversal-inl.h"
-
-#include <glm/common.hpp>
+#include "tracer/geometry/absolute.h"
 
 #include <algorithm>
 #include <bit>
@@ -29,8 +28,7 @@ HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
 
 inline float largest_of(const glm::vec3& v) {
-    const glm::vec3 a = glm::abs(v);
-    return std::max(std::max(a.x, a.y), a.z);
+    return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
 }
 
 // What lies behind a ray's origin is not on it.
@@ -46,7 +44,7 @@ public:
     // As it came, for objects that stand where their shapes do.
     RayInSpace(const Ray& ray, float reach)
         : origin_reach_(largest_of(ray.origin)),
-          slabs_(ray.origin, ray.direction, kDoubleSlop * std::max(origin_reach_, reach)),
+          slabs_(ray, kDoubleSlop * std::max(origin_reach_, reach)),
           filter_(ray.origin, ray.direction) {}
 
     RayInSpace(const ObjectRay& ray, const Instance& instance)
@@ -71,7 +69,7 @@ private:
     // Of a ray that float can't hold one that meets every box there is: infinity less infinity is
     // no number, which would let it into the empty boxes of children that aren't there, too.
     static SlabRay slabs_of(const glm::vec3& origin, const glm::vec3& direction, float slop) {
-        const glm::vec3 sum = glm::abs(origin) + glm::abs(direction) + slop;
+        const glm::vec3 sum = absolute(origin) + absolute(direction) + slop;
         if (std::isfinite(sum.x) && std::isfinite(sum.y) && std::isfinite(sum.z)) {
             return {origin, direction, slop};
         }

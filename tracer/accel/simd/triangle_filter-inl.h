@@ -8,10 +8,9 @@
 #endif
 
 #include "tracer/accel/simd/patch_corners-inl.h"
+#include "tracer/geometry/absolute.h"
 #include "tracer/geometry/shapes.h"
 #include "tracer/geometry/triangle_test.h"
-
-#include <glm/common.hpp>
 
 #include <algorithm>
 #include <array>
@@ -116,7 +115,7 @@ private:
 
     // Without a branch, as it can't be foretold.
     static int longest_axis(const glm::vec3& direction) {
-        const glm::vec3 d = glm::abs(direction);
+        const glm::vec3 d = absolute(direction);
         const int z_is_longest = static_cast<int>(d.z >= std::max(d.x, d.y));
         const int y_is_longest = static_cast<int>(d.y >= d.x) & (1 - z_is_longest);
         return y_is_longest + 2 * z_is_longest;

@@ -8,14 +8,13 @@
 
 #include "tracer/accel/simd/packing-inl.h"
 #include "tracer/bvh/wide_bvh.h"
+#include "tracer/geometry/ray.h"
 
 #include <glm/vec3.hpp>
 
 #include <array>
-#include <bit>
-#include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <utility>
 
 #include <hwy/highway.h>
 
@@ -123,21 +122,33 @@ struct WaitingBoxes {
 // rounded on their way into object space.
 class SlabRay {
 public:
-    SlabRay(const glm::vec3& origin, const glm::vec3& direction, float slop) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const auto i = static_cast<int>(axis);
-            const float inverse = 1.0f / direction[i];
-            // Without a branch, as signs can't be foretold.
-            const std::size_t negative = std::bit_cast<std::uint32_t>(inverse) >> 31;
-            const float widen = std::copysign(slop, inverse);
-            first_[axis] = kWidth * (axis + 3 * negative);
-            second_[axis] = kWidth * (axis + 3 - 3 * negative);
-            octant_ |= negative << axis;
-            inverse_near_[axis] = inverse * kShrink;
-            inverse_far_[axis] = inverse * kGrow;
-            near_origin_[axis] = origin[i] + widen;
-            far_origin_[axis] = origin[i] - widen;
+    SlabRay(const glm::vec3& origin, const glm::vec3& direction, float slop)
+        : SlabRay(Ray{origin, direction}, slop) {}
+
+    SlabRay(const Ray& ray, float slop) {
+        static_assert(sizeof(Ray) == 8 * sizeof(float) && offsetof(Ray, direction) == 12);
+        const Axes d;
+        const hn::Rebind<std::uint32_t, Axes> du;
+        const auto* numbers = reinterpret_cast<const float*>(&ray);
+        for (std::size_t i = 0; i < kAxes; i += hn::Lanes(d)) {
+            const auto origin = hn::LoadU(d, numbers + i);
+            const auto inverse = hn::Div(hn::Set(d, 1.0f), hn::LoadU(d, numbers + 3 + i));
+            const auto negative = hn::ShiftRight<31>(hn::BitCast(du, inverse));
+            const auto widen = hn::CopySign(hn::Set(d, slop), inverse);
+            const auto low = hn::Load(du, kLow + i);
+            const auto either = hn::Mul(negative, hn::Set(du, 3 * kWidth));
+            hn::Store(hn::Add(low, either), du, first_ + i);
+            hn::Store(hn::Sub(hn::Add(low, hn::Set(du, 3 * kWidth)), either), du, second_ + i);
+            hn::Store(hn::Mul(inverse, hn::Set(d, kShrink)), d, inverse_near_ + i);
+            hn::Store(hn::Mul(inverse, hn::Set(d, kGrow)), d, inverse_far_ + i);
+            hn::Store(hn::Add(origin, widen), d, near_origin_ + i);
+            hn::Store(hn::Sub(origin, widen), d, far_origin_ + i);
+            const hn::RebindToSigned<Axes> di;
+            std::uint8_t bits[8] = {};
+            hn::StoreMaskBits(di, hn::Lt(hn::BitCast(di, inverse), hn::Zero(di)), bits);
+            octant_ |= std::size_t{bits[0]} << i;
         }
+        octant_ &= 7;
     }
 
     // Puts the children whose boxes the ray may meet within [t_min, t_max] onto the stack, near
@@ -207,12 +218,17 @@ private:
     static constexpr float kGrow = 1.0f + 8.0f * 5.9604645e-8f;
     static constexpr float kShrink = 1.0f - 8.0f * 5.9604645e-8f;
 
-    std::array<float, 3> inverse_near_{};
-    std::array<float, 3> inverse_far_{};
-    std::array<float, 3> near_origin_{};
-    std::array<float, 3> far_origin_{};
-    std::array<std::size_t, 3> first_{};  // the plane that it meets first: where a node has it
-    std::array<std::size_t, 3> second_{};
+    // By axis; the fourth is nobody's.
+    static constexpr std::size_t kAxes = 4;
+    using Axes = hn::CappedTag<float, kAxes>;
+    alignas(16) static constexpr std::uint32_t kLow[kAxes] = {0, kWidth, 2 * kWidth, 3 * kWidth};
+
+    alignas(16) float inverse_near_[kAxes];
+    alignas(16) float inverse_far_[kAxes];
+    alignas(16) float near_origin_[kAxes];
+    alignas(16) float far_origin_[kAxes];
+    alignas(16) std::uint32_t first_[kAxes];  // the plane that it meets first: where a node has it
+    alignas(16) std::uint32_t second_[kAxes];
     std::size_t octant_ = 0;
 };
 
