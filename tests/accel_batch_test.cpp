@@ -154,6 +154,34 @@ TEST_P(AccelBatch, RimsOfSpheres) {
     expect_as_one_by_one(accel, rays);
 }
 
+// Rays that touch spheres in one point, where they see neither a front nor a back.
+TEST_P(AccelBatch, TangentsOfSpheres) {
+    std::vector<glm::vec4> spheres;
+    for (int i = 0; i < 36; ++i)
+        spheres.emplace_back(4 * (i % 6), 4 * (i / 6), 0, i % 2 == 0 ? 1.0f : 0.5f);
+    Scene scene;
+    place(scene, SphereSetInstance{add_sphere_set(scene, make_sphere_set("set", spheres))});
+    const Accel accel = accel_of(scene);
+    std::vector<Ray> rays;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const float way : {-1.0f, 1.0f}) {
+            for (const glm::vec4& sphere : spheres) {
+                glm::vec3 along(0.0f);
+                glm::vec3 beside(0.0f);
+                along[axis] = way;
+                beside[(axis + 1) % 3] = sphere.w;
+                rays.push_back({glm::vec3(sphere) + beside - 2.0f * along, along});
+            }
+        }
+    }
+    for (const Sides sides : {Sides::both, Sides::front_only, Sides::back_only}) {
+        RayQuery query;
+        query.sides = sides;
+        expect_as_one_by_one(accel, rays, query,
+                             sides == Sides::front_only ? Hits::perhaps : Hits::some);
+    }
+}
+
 TEST_P(AccelBatch, AllShapesAndInstances) {
     expect_all_ways(mixed_scene(), 3);
 }

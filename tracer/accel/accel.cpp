@@ -195,6 +195,7 @@ Accel::Accel(std::shared_ptr<const Scene> scene, const BuildOptions& options, co
     state->trees =
         build_trees(*state->scene, options, reuse != nullptr ? &reuse->state_->trees : nullptr);
     const PrimitiveCounts counts = count_primitives(*state->scene);
+    state->has_spheres = counts.spheres > 0;
     state->mostly_triangles = counts.triangles > counts.spheres + counts.cones;
     place_objects(*state, options);
     state_ = std::move(state);

@@ -52,6 +52,7 @@ struct AccelState {
     Bounds bounds;                         // of the finite objects
     float reach = 0.0f;                    // the largest coordinate of these
     bool mostly_triangles = false;         // more of them than spheres and cones of sets
+    bool has_spheres = false;              // in sets
 };
 
 }  // namespace raypick

@@ -70,8 +70,12 @@ public:
         const Decided decided(pairs_);
         typename Decided::Hits enters;
         typename Decided::Hits leaves;
-        decided.hits_at(0, enters);
-        decided.hits_at(~0u, leaves);
+        decided.sides_at(0, decided.ordinary, enters);
+        decided.sides_at(~0u, decided.ordinary, leaves);
+        if (work_.query.uv) {
+            decided.uv_at(0, enters);
+            decided.uv_at(~0u, leaves);
+        }
         const std::uint32_t known = decided.ordinary & decided.enters_by_side &
                                     decided.leaves_by_side & enters.ordinary & leaves.ordinary;
         for (std::size_t lane = 0; lane < count_; ++lane) {

@@ -76,10 +76,11 @@ public:
         meet(base_radius, larger(base_radius, apex_radius));
     }
 
-    // The hit at the lanes' roots, on the side: `leaving` is a mask.
+    // The hits at the lanes' roots, on the side; sets of lanes are masks.
     struct Hits {
         std::uint32_t front = 0;
         std::uint32_t ordinary = 0;
+        // Where uv are asked for:
         HWY_ALIGN LaneDoubles angle_x, angle_z;  // what turn() takes
         HWY_ALIGN LaneDoubles height;            // the uv's
 
@@ -87,18 +88,21 @@ public:
             return {turn(angle_x[lane], angle_z[lane]), height[lane]};
         }
     };
-    HWY_INLINE void hits_at(std::uint32_t leaving, Hits& hits) const {
-        const Doubles d;
-        const auto bits = static_cast<std::uint8_t>(leaving);
-        const std::uint8_t stored[8] = {bits};
-        const DoubleVector after = hn::IfThenElse(hn::LoadMaskBits(d, stored), to_, from_);
-        const DoubleVector zero = hn::Zero(d);
-        const DoubleVector one = hn::Set(d, 1.0);
-        const DoubleVector3 across = plus(across_, times(after, drift_));
+    // Where they hit a front.
+    HWY_INLINE void sides_at(std::uint32_t leaving, std::uint32_t /*wanted*/, Hits& hits) const {
+        const DoubleVector zero = hn::Zero(Doubles());
+        const DoubleVector3 across = plus(across_, times(root(leaving), drift_));
         const DoubleVector distance = length(across);
         hits.ordinary = double_bits(hn::Gt(distance, zero));
         const DoubleVector3 normal = minus(over(across, distance), times(widening_, axis_));
         hits.front = double_bits(hn::Lt(dot(normal, direction_), zero));
+    }
+    HWY_INLINE void uv_at(std::uint32_t leaving, Hits& hits) const {
+        const Doubles d;
+        const DoubleVector zero = hn::Zero(d);
+        const DoubleVector one = hn::Set(d, 1.0);
+        const DoubleVector after = root(leaving);
+        const DoubleVector3 across = plus(across_, times(after, drift_));
         const DoubleVector3 y = normalize(axis_);
         const DoubleVector3 size{hn::Abs(y.x), hn::Abs(y.y), hn::Abs(y.z)};
         const auto by_x = hn::And(hn::Le(size.x, size.y), hn::Le(size.x, size.z));
@@ -117,6 +121,11 @@ public:
     }
 
 private:
+    [[nodiscard]] HWY_INLINE DoubleVector root(std::uint32_t leaving) const {
+        const std::uint8_t stored[8] = {static_cast<std::uint8_t>(leaving)};
+        return hn::IfThenElse(hn::LoadMaskBits(Doubles(), stored), to_, from_);
+    }
+
     HWY_INLINE void meet(DoubleVector base_radius, DoubleVector widest) {
         const Doubles d;
         const DoubleVector zero = hn::Zero(d);

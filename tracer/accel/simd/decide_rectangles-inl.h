@@ -70,16 +70,20 @@ public:
         decide();
     }
 
-    // The hit at the lanes' roots.
+    // The hits at the lanes' roots; sets of lanes are masks.
     struct Hits {
         std::uint32_t front = 0;
         std::uint32_t ordinary = ~0u;
-        HWY_ALIGN std::array<LaneDoubles, 2> at;
+        HWY_ALIGN std::array<LaneDoubles, 2> at;  // where uv are asked for
 
         [[nodiscard]] glm::dvec2 uv(std::size_t lane) const { return {at[0][lane], at[1][lane]}; }
     };
+    HWY_INLINE void sides_at(std::uint32_t /*leaving*/, std::uint32_t /*wanted*/,
+                             Hits& hits) const {
+        hits.front = front;
+    }
     // As meet_within.
-    HWY_INLINE void hits_at(std::uint32_t /*leaving*/, Hits& hits) const {
+    HWY_INLINE void uv_at(std::uint32_t /*leaving*/, Hits& hits) const {
         const Doubles d;
         const DoubleVector3 from_corner =
             plus(minus(origin_, corner_), times(hn::Load(d, enters_at.data()), direction_));
@@ -93,7 +97,6 @@ public:
         };
         hn::Store(share(cross(from_corner, edge_v_)), d, hits.at[0].data());
         hn::Store(share(cross(edge_u_, from_corner)), d, hits.at[1].data());
-        hits.front = front;
     }
 
 private:

@@ -12,6 +12,8 @@
 
 #include <glm/vec4.hpp>
 
+#include <cmath>
+
 HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -23,6 +25,7 @@ struct GroupSphere {
     glm::vec3 centre{0.0f};
     float squared_radius = 0.0f;
     float error = 0.0f;
+    float root_error = 0.0f;
     float along_error = 0.0f;
 };
 
@@ -40,34 +43,42 @@ inline GroupSphere group_sphere(const GroupSpace& space, const glm::vec4& sphere
         space.origin_rounding;
     result.error = 192.0f * kUnit * reach * (radius + 32.0f * kUnit * reach) +
                    8.0f * kUnit * result.squared_radius + kTiny;
+    result.root_error = std::sqrt(result.error + result.error);
     result.along_error = 48.0f * kUnit * (reach + radius) + kTiny;
     return result;
 }
 
-HWY_INLINE SphereSpan<Rays> sphere_span(const GroupSpace& space, const GroupSphere& sphere,
-                                        std::size_t ray) {
+HWY_INLINE SphereLanes<hn::Vec<Rays>> sphere_lanes(const GroupSpace& space,
+                                                   const GroupSphere& sphere, std::size_t ray) {
     const Rays d;
     const auto load = [&](const GroupFloats& numbers)
                           HWY_ATTR { return hn::Load(d, numbers.data() + ray); };
     const GroupRays& rays = space.rays;
-    return SphereSpan<Rays>({hn::Sub(load(rays.origin[0]), hn::Set(d, sphere.centre.x)),
-                             hn::Sub(load(rays.origin[1]), hn::Set(d, sphere.centre.y)),
-                             hn::Sub(load(rays.origin[2]), hn::Set(d, sphere.centre.z)),
-                             load(rays.direction[0]), load(rays.direction[1]),
-                             load(rays.direction[2]), hn::Set(d, sphere.squared_radius),
-                             hn::Set(d, sphere.error), hn::Set(d, sphere.along_error)});
+    return {hn::Sub(load(rays.origin[0]), hn::Set(d, sphere.centre.x)),
+            hn::Sub(load(rays.origin[1]), hn::Set(d, sphere.centre.y)),
+            hn::Sub(load(rays.origin[2]), hn::Set(d, sphere.centre.z)),
+            load(rays.direction[0]),
+            load(rays.direction[1]),
+            load(rays.direction[2]),
+            load(rays.inverse_squared),
+            load(rays.inverse_length),
+            hn::Set(d, sphere.squared_radius),
+            hn::Set(d, sphere.error),
+            hn::Set(d, sphere.root_error),
+            hn::Set(d, sphere.along_error)};
 }
 
 HWY_INLINE Verdict judge(const GroupSpace& space, const GroupLimits& limits,
                          const GroupSphere& sphere, const ShownSides& shown, std::size_t ray) {
     const Rays d;
     Verdict verdict;
-    const SphereSpan<Rays> span = sphere_span(space, sphere, ray);
-    const auto error = hn::Set(d, sphere.error);
+    const SphereLanes<hn::Vec<Rays>> lanes = sphere_lanes(space, sphere, ray);
+    const SphereApproach<Rays> nearest(lanes);
     // Arranged so that a NaN rules nothing out.
-    verdict.may = ~ray_bits(hn::Lt(span.depth, hn::Neg(error))) & kAllAtOnce;
+    verdict.may = ~ray_bits(hn::Lt(nearest.depth, hn::Neg(lanes.error))) & kAllAtOnce;
     if (verdict.may == 0) return verdict;
-    const SphereCrossing<Rays> crossing(span, error, hn::Load(d, limits.t_min.data() + ray),
+    const SphereSpan<Rays> span(nearest, lanes);
+    const SphereCrossing<Rays> crossing(span, lanes.error, hn::Load(d, limits.t_min.data() + ray),
                                         hn::Load(d, limits.t_far.data() + ray), shown.front,
                                         shown.back);
     verdict.may &= ~ray_bits(crossing.misses);

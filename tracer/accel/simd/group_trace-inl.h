@@ -232,6 +232,9 @@ private:
         each_ray(mask, [&](std::size_t ray)
                            HWY_ATTR { forward.set(ray, object_ray(instance, rays_[ray])); });
         forward.invert();
+        if (std::holds_alternative<SphereSetInstance>(state_.scene->objects[entry.object].shape)) {
+            forward.measure_lengths();
+        }
         GroupRays back;  // NOLINT: not initialised, as it is large
         GroupCourse course = world.course;
         if (course.backwards()) {

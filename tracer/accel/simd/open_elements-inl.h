@@ -85,8 +85,8 @@ private:
                                           const Hits& hits) const {
         typename Decided::Hits enters;
         typename Decided::Hits leaves;
-        decided.hits_at(0, enters);
-        decided.hits_at(~0u, leaves);
+        decided.sides_at(0, in_range.enters & decided.ordinary, enters);
+        decided.sides_at(~0u, in_range.leaves & decided.ordinary, leaves);
         const std::uint32_t known_enters = decided.enters_by_side & enters.ordinary;
         const std::uint32_t known_leaves = decided.leaves_by_side & leaves.ordinary;
         const std::uint32_t unknown =

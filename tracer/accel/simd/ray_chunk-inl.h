@@ -67,6 +67,7 @@ struct Chunk {
             apart |= group;
             group = 0;
         }
+        if (state.has_spheres && apart != groupable) world.measure_lengths();
     }
 
 private:

@@ -98,6 +98,9 @@ struct GroupRays {
     HWY_ALIGN std::array<GroupFloats, 3> origin;
     HWY_ALIGN std::array<GroupFloats, 3> direction;
     HWY_ALIGN std::array<GroupFloats, 3> inverse;  // 1 / direction, clamped
+    // What spheres ask for, of a direction d, set by measure_lengths():
+    HWY_ALIGN GroupFloats inverse_squared;  // 1 / d.d
+    HWY_ALIGN GroupFloats inverse_length;   // 1 / |d|
 
     void set(std::size_t ray, const ObjectRay& from) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -133,6 +136,19 @@ struct GroupRays {
                 hn::Store(hn::IfThenElse(fits, exact, hn::CopySign(steepest, along)), d,
                           inverse[axis].data() + i);
             }
+        }
+    }
+
+    void measure_lengths() {
+        const Rays d;
+        for (std::size_t i = 0; i < kGroup; i += kAtOnce) {
+            const auto x = hn::Load(d, direction[0].data() + i);
+            const auto y = hn::Load(d, direction[1].data() + i);
+            const auto z = hn::Load(d, direction[2].data() + i);
+            const auto squared = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+            const auto inverse_of_squared = hn::Div(hn::Set(d, 1.0f), squared);
+            hn::Store(inverse_of_squared, d, inverse_squared.data() + i);
+            hn::Store(hn::Sqrt(inverse_of_squared), d, inverse_length.data() + i);
         }
     }
 

@@ -94,7 +94,8 @@ private:
             if (!(enters || leaves) || (decided.ordinary & by_side & bit) == 0) left |= bit;
         });
         typename Decided::Hits found;
-        decided.hits_at(leaving, found);
+        decided.sides_at(leaving, mask & ~left, found);
+        if (query_.uv) decided.uv_at(leaving, found);
         RayMask open = 0;
         each_bit(mask, [&](std::size_t i) HWY_ATTR {
             const bool leaves = ((leaving >> i) & 1) != 0;

@@ -15,13 +15,16 @@ HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Rays and spheres side by side, a lane each, with what bounds the errors: see SphereSpan.
+// Rays and spheres side by side, a lane each, with what bounds the errors: see SphereApproach.
 template <class V>
 struct SphereLanes {
     V from_x, from_y, from_z;  // from the centre to the ray's origin
-    V x, y, z;                 // the ray's direction
+    V x, y, z;                 // the ray's direction d
+    V inverse_squared;         // 1 / d.d
+    V inverse_length;          // 1 / |d|
     V squared_radius;
     V error;        // of r^2 - q.q: E
+    V root_error;   // sqrt(2 E)
     V along_error;  // of t |d|, and of half a chord besides E's part
 };
 
@@ -31,32 +34,40 @@ struct SphereLanes {
 // u F, and r^2 - q.q where q is not longer than about r by less than E = 192 u F (r + 32 u F) + 8 u
 // r^2.
 template <class D, class V = hn::Vec<D>>
-struct SphereSpan {
+struct SphereApproach {
+    V t;      // of q
     V depth;  // r^2 - q.q: above 0 within
+
+    HWY_INLINE explicit SphereApproach(const SphereLanes<V>& at) {
+        const auto towards =
+            hn::MulAdd(at.from_x, at.x, hn::MulAdd(at.from_y, at.y, hn::Mul(at.from_z, at.z)));
+        t = hn::Neg(hn::Mul(towards, at.inverse_squared));
+        const auto qx = hn::MulAdd(t, at.x, at.from_x);
+        const auto qy = hn::MulAdd(t, at.y, at.from_y);
+        const auto qz = hn::MulAdd(t, at.z, at.from_z);
+        depth =
+            hn::NegMulAdd(qx, qx, hn::NegMulAdd(qy, qy, hn::NegMulAdd(qz, qz, at.squared_radius)));
+    }
+};
+
+// The same, with where the ray enters and leaves: that takes longer, and most rays pass by.
+template <class D, class V = hn::Vec<D>>
+struct SphereSpan {
+    V depth;
     V enter;  // these two are wrong by `error` at most
     V leave;
     V error;
 
-    HWY_INLINE explicit SphereSpan(const SphereLanes<V>& at) {
+    HWY_INLINE SphereSpan(const SphereApproach<D>& nearest, const SphereLanes<V>& at)
+        : depth(nearest.depth) {
         const D d;
-        const auto squared = hn::MulAdd(at.x, at.x, hn::MulAdd(at.y, at.y, hn::Mul(at.z, at.z)));
-        const auto towards =
-            hn::MulAdd(at.from_x, at.x, hn::MulAdd(at.from_y, at.y, hn::Mul(at.from_z, at.z)));
-        const auto nearest = hn::Neg(hn::Div(towards, squared));
-        const auto qx = hn::MulAdd(nearest, at.x, at.from_x);
-        const auto qy = hn::MulAdd(nearest, at.y, at.from_y);
-        const auto qz = hn::MulAdd(nearest, at.z, at.from_z);
-        depth =
-            hn::NegMulAdd(qx, qx, hn::NegMulAdd(qy, qy, hn::NegMulAdd(qz, qz, at.squared_radius)));
-        const auto length = hn::Sqrt(squared);
         const auto half = hn::Sqrt(hn::Max(depth, hn::Zero(d)));
-        const auto chord = hn::Div(half, length);
-        enter = hn::Sub(nearest, chord);
-        leave = hn::Add(nearest, chord);
+        const auto chord = hn::Mul(half, at.inverse_length);
+        enter = hn::Sub(nearest.t, chord);
+        leave = hn::Add(nearest.t, chord);
         // Of the square root: E / half a chord, and sqrt(2 E) at most.
-        const auto of_root =
-            hn::Min(hn::Div(at.error, half), hn::Sqrt(hn::Add(at.error, at.error)));
-        error = hn::Div(hn::Add(of_root, at.along_error), length);
+        const auto of_root = hn::Min(hn::Div(at.error, half), at.root_error);
+        error = hn::Mul(hn::Add(of_root, at.along_error), at.inverse_length);
     }
 };
 
@@ -109,6 +120,7 @@ HWY_INLINE void set_sphere_errors(D d, V reach, V radius, SphereLanes<V>& to) {
     const auto of_reach = hn::Mul(hn::Set(d, 192.0f * kUnit), reach);
     to.error = hn::MulAdd(of_reach, hn::MulAdd(hn::Set(d, 32.0f * kUnit), reach, radius),
                           hn::MulAdd(hn::Set(d, 8.0f * kUnit), to.squared_radius, tiny));
+    to.root_error = hn::Sqrt(hn::Add(to.error, to.error));
     to.along_error = hn::MulAdd(hn::Set(d, 48.0f * kUnit), hn::Add(reach, radius), tiny);
 }
 

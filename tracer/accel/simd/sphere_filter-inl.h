@@ -11,11 +11,13 @@
 #include "tracer/accel/simd/ray_verdict-inl.h"
 #include "tracer/accel/simd/sphere_bounds-inl.h"
 #include "tracer/accel/simd/triangle_bounds-inl.h"
+#include "tracer/geometry/absolute.h"
 
-#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -36,7 +38,7 @@ public:
           direction_(ray.direction),
           t_min_(t_min),
           rounding_(rounded ? reach : 0.0f) {
-        const glm::vec3 along = glm::abs(direction_);
+        const glm::vec3 along = absolute(direction_);
         const float steepest = std::max({along.x, along.y, along.z});
         // Beyond it products overflow, or bounds don't hold: then nothing is ruled out.
         idle_ = !(reach < 1e11f && steepest > 1e-6f && steepest < 1e6f);
@@ -54,7 +56,7 @@ public:
         if (idle_) return all;
         const Spheres d;
         const SphereLanes<Floats> at = lanes(spheres);
-        const SphereSpan<Spheres> span(at);
+        const SphereSpan<Spheres> span(SphereApproach<Spheres>(at), at);
         const auto grow = hn::Set(d, 1.0f + 0x1p-21f);
         const auto shrink = hn::Set(d, 1.0f - 0x1p-21f);
         // Arranged so that a NaN rules nothing out.
@@ -72,9 +74,11 @@ public:
                           RayVerdict& verdict) const {
         const Spheres d;
         const SphereLanes<Floats> at = lanes(spheres);
-        const SphereSpan<Spheres> span(at);
-        verdict.may = ((1u << spheres.size()) - 1u) & ~bits(hn::Lt(span.depth, hn::Neg(at.error)));
+        const SphereApproach<Spheres> nearest(at);
+        verdict.may =
+            ((1u << spheres.size()) - 1u) & ~bits(hn::Lt(nearest.depth, hn::Neg(at.error)));
         if (verdict.may == 0) return;
+        const SphereSpan<Spheres> span(nearest, at);
         const SphereCrossing<Spheres> crossing(span, at.error, hn::Set(d, t_min_),
                                                hn::Set(d, limit), shown.front, shown.back);
         verdict.may &= ~bits(crossing.misses);
@@ -111,6 +115,8 @@ private:
         at.x = hn::Set(d, direction_.x);
         at.y = hn::Set(d, direction_.y);
         at.z = hn::Set(d, direction_.z);
+        at.inverse_squared = hn::Set(d, inverse_squared_);
+        at.inverse_length = hn::Set(d, inverse_length_);
         const auto farthest =
             hn::Max(hn::Max(hn::Abs(at.from_x), hn::Abs(at.from_y)), hn::Abs(at.from_z));
         set_sphere_errors(d, hn::Add(farthest, hn::Set(d, rounding_)), radius, at);
@@ -118,6 +124,8 @@ private:
     }
 
     glm::vec3 origin_, direction_;
+    float inverse_squared_ = 1.0f / glm::dot(direction_, direction_);
+    float inverse_length_ = std::sqrt(inverse_squared_);
     float t_min_;
     float rounding_ = 0.0f;
     bool idle_ = false;
