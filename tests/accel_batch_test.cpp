@@ -399,7 +399,8 @@ TEST_P(AccelBatch, OddSizesAndRaysThatAreNone) {
         }
     }
     rays[0].t_max = kNaN;
-    for (const std::size_t count : {0u, 1u, 5u, 6u, 7u, 15u, 16u, 17u, 63u, 64u, 65u, 200u, 500u}) {
+    for (const std::size_t count :
+         {0u, 1u, 2u, 3u, 4u, 5u, 6u, 7u, 15u, 16u, 17u, 63u, 64u, 65u, 200u, 500u}) {
         SCOPED_TRACE(count);
         expect_as_one_by_one(accel, {rays.begin(), rays.begin() + static_cast<long>(count)}, {},
                              count < 15 ? Hits::perhaps : Hits::some);

@@ -42,6 +42,9 @@ std::vector<Hit> all_hits(const AccelState& state, const Ray& ray, const RayQuer
 
 namespace {
 
+// Fewer rays than that are quicker one by one.
+constexpr std::size_t kFewestInChunk = 4;
+
 void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::span<Hit> hits,
                       const RayQuery& query) {
     const Chunk chunk(state, rays, query);
@@ -103,20 +106,28 @@ void any_of_chunk(const AccelState& state, std::span<const Ray> rays,
 
 void closest_hits(const AccelState& state, std::span<const Ray> rays, std::span<Hit> hits,
                   const RayQuery& query) {
-    for (std::size_t i = 0; i < rays.size(); i += kGroup) {
+    std::size_t i = 0;
+    while (rays.size() - i >= kFewestInChunk) {
         const std::size_t count = std::min(kGroup, rays.size() - i);
         closest_of_chunk(state, rays.subspan(i, count), hits.subspan(i, count), query);
+        i += count;
     }
+    for (; i < rays.size(); ++i)
+        hits[i] = HWY_NAMESPACE::closest_hit(state, rays[i], query).value_or(Hit{});
 }
 
 void any_hits(const AccelState& state, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
               const RayQuery& query, const glm::vec3* end) {
     // Rays backwards from there are of one origin, which is what triangles gain from.
     if (!state.mostly_triangles) end = nullptr;
-    for (std::size_t i = 0; i < rays.size(); i += kGroup) {
+    std::size_t i = 0;
+    while (rays.size() - i >= kFewestInChunk) {
         const std::size_t count = std::min(kGroup, rays.size() - i);
         any_of_chunk(state, rays.subspan(i, count), blocked.subspan(i, count), query, end);
+        i += count;
     }
+    for (; i < rays.size(); ++i)
+        blocked[i] = HWY_NAMESPACE::any_hit(state, rays[i], query) ? 1 : 0;
 }
 
 }  // namespace raypick::HWY_NAMESPACE

@@ -29,8 +29,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 inline int fewest_in_group(const AccelState& state, const std::array<RayMask, 8>& octants) {
     const auto ways =
         std::count_if(octants.begin(), octants.end(), [](RayMask group) { return group != 0; });
-    if (state.mostly_triangles) return ways > 6 ? 24 : 12;
-    return ways > 6 ? 12 : kFewRays + 1;
+    if (ways > 6) return 24;
+    return state.mostly_triangles ? 12 : kFewRays + 1;
 }
 
 // Rays as they come, and which of them can go in groups.
