@@ -9,6 +9,7 @@
 
 #include "tracer/accel/leaf_elements.h"
 #include "tracer/accel/simd/cone_bounds-inl.h"
+#include "tracer/accel/simd/mask_bits-inl.h"
 
 #include <algorithm>
 #include <cmath>
@@ -88,9 +89,7 @@ private:
 
     template <class M>
     static HWY_INLINE std::uint32_t bits(M mask) {
-        std::uint8_t stored[8] = {};
-        hn::StoreMaskBits(Four(), mask, stored);
-        return stored[0];
+        return bits_of_mask(Four(), mask);
     }
 
     glm::vec3 origin_, direction_;

@@ -9,6 +9,7 @@
 #endif
 
 #include "tracer/accel/simd/double_vectors-inl.h"
+#include "tracer/accel/simd/mask_bits-inl.h"
 #include "tracer/geometry/axis_frame.h"
 #include "tracer/geometry/shapes.h"
 
@@ -122,8 +123,7 @@ public:
 
 private:
     [[nodiscard]] HWY_INLINE DoubleVector root(std::uint32_t leaving) const {
-        const std::uint8_t stored[8] = {static_cast<std::uint8_t>(leaving)};
-        return hn::IfThenElse(hn::LoadMaskBits(Doubles(), stored), to_, from_);
+        return hn::IfThenElse(mask_of_bits(Doubles(), leaving), to_, from_);
     }
 
     HWY_INLINE void meet(DoubleVector base_radius, DoubleVector widest) {

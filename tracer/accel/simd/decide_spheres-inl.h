@@ -9,6 +9,7 @@
 #endif
 
 #include "tracer/accel/simd/double_vectors-inl.h"
+#include "tracer/accel/simd/mask_bits-inl.h"
 #include "tracer/geometry/shapes.h"
 #include "tracer/geometry/sphere_uv.h"
 
@@ -110,8 +111,7 @@ public:
 
 private:
     [[nodiscard]] HWY_INLINE DoubleVector3 from_centre(std::uint32_t leaving) const {
-        const std::uint8_t stored[8] = {static_cast<std::uint8_t>(leaving)};
-        const DoubleVector t = hn::IfThenElse(hn::LoadMaskBits(Doubles(), stored), to_, from_);
+        const DoubleVector t = hn::IfThenElse(mask_of_bits(Doubles(), leaving), to_, from_);
         return minus(plus(origin_, times(t, direction_)), centre_);
     }
 

@@ -8,6 +8,7 @@
 #endif
 
 #include "tracer/accel/passage.h"
+#include "tracer/accel/simd/mask_bits-inl.h"
 #include "tracer/accel/simd/ray_group-inl.h"
 #include "tracer/geometry/ray.h"
 #include "tracer/geometry/shapes.h"
@@ -336,11 +337,8 @@ HWY_INLINE void decide(TriangleColumns columns, TriangleAnswers& answers) {
     store(hn::Mul(scaled, hn::Mul(shear.z, inverse)), answers.t);
     store(hn::Mul(v, inverse), answers.u);
     store(hn::Mul(w, inverse), answers.v);
-    std::uint8_t stored[8] = {};
-    hn::StoreMaskBits(d, hit, stored);
-    answers.hit = stored[0];
-    hn::StoreMaskBits(d, hn::Gt(determinant, zero), stored);
-    answers.front = stored[0];
+    answers.hit = bits_of_mask(d, hit);
+    answers.front = bits_of_mask(d, hn::Gt(determinant, zero));
 }
 
 // Decides the mask's rays, each with a triangle that set(ray, pairs, lane) puts into a lane; false:

@@ -8,6 +8,7 @@
 #endif
 
 #include "tracer/accel/simd/decide_triangles-inl.h"
+#include "tracer/accel/simd/mask_bits-inl.h"
 #include "tracer/accel/simd/triples-inl.h"
 
 #include <array>
@@ -22,9 +23,7 @@ using LaneDoubles = std::array<double, kDoublesAtOnce>;
 
 template <class M>
 HWY_INLINE std::uint32_t double_bits(M mask) {
-    std::uint8_t stored[8] = {};
-    hn::StoreMaskBits(Doubles(), mask, stored);
-    return stored[0];
+    return bits_of_mask(Doubles(), mask);
 }
 
 HWY_INLINE DoubleVector load_doubles(const LaneDoubles& numbers) {

@@ -360,16 +360,11 @@ HWY_INLINE RayMask take(ClosestOfGroup& search, const Verdict& verdict, std::siz
         const auto far = hn::Load(d, search.limits.t_far.data() + ray);
         const auto window = hn::Mul(verdict.to, hn::Set(d, kBeyondTie));
         const RayMask first = sure & ray_bits(hn::Lt(window, from));
-        std::uint8_t stored[8] = {static_cast<std::uint8_t>(first),
-                                  static_cast<std::uint8_t>(first >> 8)};
-        const auto keep = hn::LoadMaskBits(d, stored);
+        const auto keep = ray_mask(first);
         hn::BlendedStore(verdict.from, keep, d, search.candidate_from.data() + ray);
         hn::BlendedStore(hn::Set(du, taken.place), hn::RebindMask(du, keep), du,
                          search.candidate.data() + ray);
-        std::uint8_t stored_sure[8] = {static_cast<std::uint8_t>(sure),
-                                       static_cast<std::uint8_t>(sure >> 8)};
-        hn::BlendedStore(hn::Min(far, window), hn::LoadMaskBits(d, stored_sure), d,
-                         search.limits.t_far.data() + ray);
+        hn::BlendedStore(hn::Min(far, window), ray_mask(sure), d, search.limits.t_far.data() + ray);
         search.found |= first << ray;
         rivals &= ~first;
     }

@@ -8,6 +8,7 @@
 
 #include "tracer/accel/simd/decide_triangles-inl.h"
 #include "tracer/accel/simd/group_search-inl.h"
+#include "tracer/accel/simd/mask_bits-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
 #include "tracer/accel/simd/sole_elements-inl.h"
 
@@ -72,13 +73,6 @@ private:
     using NumberLanes = hn::Rebind<std::uint32_t, Doubles>;
     static constexpr RayMask kAllLanes = (RayMask{1} << kDoublesAtOnce) - 1;
 
-    template <class D, class M>
-    static HWY_INLINE RayMask lane_bits(D d, M mask) {
-        std::uint8_t stored[8] = {};
-        hn::StoreMaskBits(d, mask, stored);
-        return stored[0];
-    }
-
     // Returns those that it was for, which have their hits now or are left for others to decide.
     RayMask decide_neighbours(RayMask mask) {
         RayMask done = 0;
@@ -115,7 +109,7 @@ private:
         const std::uint32_t one = search_.candidate[first + some];
         const NumberLanes d;
         const auto places = hn::LoadU(d, search_.candidate.data() + first);
-        if ((mask & ~lane_bits(d, hn::Eq(places, hn::Set(d, one)))) == 0) {
+        if ((mask & ~bits_of_mask(d, hn::Eq(places, hn::Set(d, one)))) == 0) {
             HWY_NAMESPACE::decide(TriangleColumns(world_, first, search_.candidates[one].corners),
                                   answers);
             return;
@@ -134,7 +128,7 @@ private:
         const auto t = hn::Load(d, answers.t.data());
         const auto within = hn::And(hn::Gt(t, hn::LoadU(d, limits_.t_min.data() + first)),
                                     hn::Lt(t, hn::LoadU(d, limits_.t_far.data() + first)));
-        const RayMask hit = mask & answers.hit & lane_bits(d, within);
+        const RayMask hit = mask & answers.hit & bits_of_mask(d, within);
         left_ |= (mask & ~hit) << first;
         each_ray(hit, [&](std::size_t lane) HWY_ATTR { set_hit(first + lane, answers, lane); });
     }

@@ -6,6 +6,7 @@
 #define RAYPICK_PATCH_CORNERS_INL_H
 #endif
 
+#include "tracer/accel/simd/mask_bits-inl.h"
 #include "tracer/accel/triangle_patches.h"
 
 #include <cstddef>
@@ -68,9 +69,7 @@ private:
 
 template <class M>
 HWY_INLINE std::uint32_t triangle_bits(M mask) {
-    std::uint8_t stored[8] = {};
-    hn::StoreMaskBits(Triangles(), mask, stored);
-    return stored[0];
+    return bits_of_mask(Triangles(), mask);
 }
 
 }  // namespace raypick::HWY_NAMESPACE

@@ -8,6 +8,7 @@
 #endif
 
 #include "tracer/accel/simd/cone_bounds-inl.h"
+#include "tracer/accel/simd/mask_bits-inl.h"
 #include "tracer/accel/simd/ray_verdict-inl.h"
 #include "tracer/geometry/ray.h"
 
@@ -78,9 +79,7 @@ private:
     }
 
     static HWY_INLINE std::uint32_t bits(const hn::Mask<Pairs>& mask) {
-        std::uint8_t stored[8] = {};
-        hn::StoreMaskBits(Pairs(), mask, stored);
-        return stored[0];
+        return bits_of_mask(Pairs(), mask);
     }
 
     // Base and radius, apex and radius, origin, direction, steepest, t_min and t_far. What no pair

@@ -7,6 +7,7 @@
 #define RAYPICK_RAY_GROUP_INL_H
 #endif
 
+#include "tracer/accel/simd/mask_bits-inl.h"
 #include "tracer/accel/simd/wide_traversal-inl.h"
 #include "tracer/geometry/shapes.h"
 
@@ -16,7 +17,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 
 #include <hwy/highway.h>
@@ -71,20 +71,11 @@ HWY_INLINE void each_ray(RayMask mask, const Body& body) {
 
 template <class M>
 HWY_INLINE RayMask ray_bits(M mask) {
-    std::uint8_t stored[8] = {};
-    hn::StoreMaskBits(Rays(), mask, stored);
-    if constexpr (std::endian::native == std::endian::little) {
-        std::uint16_t bits = 0;
-        std::memcpy(&bits, stored, sizeof(bits));
-        return bits;
-    }
-    return static_cast<RayMask>(stored[0]) | static_cast<RayMask>(stored[1]) << 8;
+    return bits_of_mask(Rays(), mask);
 }
 
 HWY_INLINE hn::Mask<Rays> ray_mask(RayMask bits) {
-    const std::uint8_t stored[8] = {static_cast<std::uint8_t>(bits),
-                                    static_cast<std::uint8_t>(bits >> 8)};
-    return hn::LoadMaskBits(Rays(), stored);
+    return mask_of_bits(Rays(), static_cast<std::uint32_t>(bits));
 }
 
 // Beyond it float products of three coordinates overflow.

@@ -8,6 +8,7 @@
 #endif
 
 #include "tracer/accel/leaf_elements.h"
+#include "tracer/accel/simd/mask_bits-inl.h"
 #include "tracer/accel/simd/ray_verdict-inl.h"
 #include "tracer/accel/simd/sphere_bounds-inl.h"
 #include "tracer/accel/simd/triangle_bounds-inl.h"
@@ -92,9 +93,7 @@ private:
     using Floats = hn::Vec<Spheres>;
 
     static HWY_INLINE std::uint32_t bits(const hn::Mask<Spheres>& mask) {
-        std::uint8_t stored[8] = {};
-        hn::StoreMaskBits(Spheres(), mask, stored);
-        return stored[0];
+        return bits_of_mask(Spheres(), mask);
     }
 
     template <typename Elements>

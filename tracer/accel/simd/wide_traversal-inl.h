@@ -6,6 +6,7 @@
 #define RAYPICK_WIDE_TRAVERSAL_INL_H
 #endif
 
+#include "tracer/accel/simd/mask_bits-inl.h"
 #include "tracer/accel/simd/packing-inl.h"
 #include "tracer/bvh/wide_bvh.h"
 #include "tracer/geometry/ray.h"
@@ -50,9 +51,7 @@ inline constexpr std::size_t kBoxesAtOnce = hn::MaxLanes(Boxes());
 
 template <class M>
 HWY_INLINE std::uint32_t box_bits(M mask) {
-    std::uint8_t stored[8] = {};
-    hn::StoreMaskBits(Boxes(), mask, stored);
-    return stored[0];
+    return bits_of_mask(Boxes(), mask);
 }
 
 #if HWY_TARGET <= HWY_AVX2
@@ -143,10 +142,8 @@ public:
             hn::Store(hn::Mul(inverse, hn::Set(d, kGrow)), d, inverse_far_ + i);
             hn::Store(hn::Add(origin, widen), d, near_origin_ + i);
             hn::Store(hn::Sub(origin, widen), d, far_origin_ + i);
-            const hn::RebindToSigned<Axes> di;
-            std::uint8_t bits[8] = {};
-            hn::StoreMaskBits(di, hn::Lt(hn::BitCast(di, inverse), hn::Zero(di)), bits);
-            octant_ |= std::size_t{bits[0]} << i;
+            const auto is_negative = hn::Ne(negative, hn::Zero(du));
+            octant_ |= std::size_t{bits_of_mask(du, is_negative)} << i;
         }
         octant_ &= 7;
     }
