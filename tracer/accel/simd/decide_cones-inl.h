@@ -89,7 +89,7 @@ public:
             return {turn(angle_x[lane], angle_z[lane]), height[lane]};
         }
     };
-    // Where they hit a front.
+    // Sets `front`, and `ordinary` to those that have a side.
     HWY_INLINE void sides_at(std::uint32_t leaving, std::uint32_t /*wanted*/, Hits& hits) const {
         const DoubleVector zero = hn::Zero(Doubles());
         const DoubleVector3 across = plus(across_, times(root(leaving), drift_));
