@@ -45,6 +45,24 @@ namespace {
 // Fewer rays than that are quicker one by one.
 constexpr std::size_t kFewestInChunk = 4;
 
+// Calls body(first, count) for one chunk of rays after the other, and returns where there are too
+// few left for one. The processor is told of the next while one is followed: by itself it foresees
+// no further than to the end of a page.
+template <typename Body>
+HWY_INLINE std::size_t each_chunk(std::span<const Ray> rays, const Body& body) {
+    constexpr std::size_t kRaysInLine = 64 / sizeof(Ray);
+    std::size_t first = 0;
+    while (rays.size() - first >= kFewestInChunk) {
+        const std::size_t count = std::min(kGroup, rays.size() - first);
+        const std::size_t next = first + count;
+        for (std::size_t i = next; i < std::min(next + kGroup, rays.size()); i += kRaysInLine)
+            __builtin_prefetch(&rays[i]);
+        body(first, count);
+        first = next;
+    }
+    return first;
+}
+
 void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::span<Hit> hits,
                       const RayQuery& query) {
     const Chunk chunk(state, rays, query);
@@ -106,12 +124,9 @@ void any_of_chunk(const AccelState& state, std::span<const Ray> rays,
 
 void closest_hits(const AccelState& state, std::span<const Ray> rays, std::span<Hit> hits,
                   const RayQuery& query) {
-    std::size_t i = 0;
-    while (rays.size() - i >= kFewestInChunk) {
-        const std::size_t count = std::min(kGroup, rays.size() - i);
-        closest_of_chunk(state, rays.subspan(i, count), hits.subspan(i, count), query);
-        i += count;
-    }
+    std::size_t i = each_chunk(rays, [&](std::size_t first, std::size_t count) HWY_ATTR {
+        closest_of_chunk(state, rays.subspan(first, count), hits.subspan(first, count), query);
+    });
     for (; i < rays.size(); ++i)
         hits[i] = HWY_NAMESPACE::closest_hit(state, rays[i], query).value_or(Hit{});
 }
@@ -120,12 +135,9 @@ void any_hits(const AccelState& state, std::span<const Ray> rays, std::span<std:
               const RayQuery& query, const glm::vec3* end) {
     // Rays backwards from there are of one origin, which is what triangles gain from.
     if (!state.mostly_triangles) end = nullptr;
-    std::size_t i = 0;
-    while (rays.size() - i >= kFewestInChunk) {
-        const std::size_t count = std::min(kGroup, rays.size() - i);
-        any_of_chunk(state, rays.subspan(i, count), blocked.subspan(i, count), query, end);
-        i += count;
-    }
+    std::size_t i = each_chunk(rays, [&](std::size_t first, std::size_t count) HWY_ATTR {
+        any_of_chunk(state, rays.subspan(first, count), blocked.subspan(first, count), query, end);
+    });
     for (; i < rays.size(); ++i)
         blocked[i] = HWY_NAMESPACE::any_hit(state, rays[i], query) ? 1 : 0;
 }

@@ -11,6 +11,7 @@
 #endif
 
 #include "tracer/accel/simd/ray_group-inl.h"
+#include "tracer/accel/tree_memory.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
@@ -167,7 +168,7 @@ HWY_INLINE float farthest(const GroupLimits& limits, RayMask mask) {
 // Calls leaf(ref, mask) for leaves that the rays may meet, near ones first, and few(ref, mask) for
 // what is left of the tree below a place where no more than kFewRays go on together.
 template <typename Leaf, typename Few>
-void walk_group(const WideBvh& bvh, const WideRef& start, const GroupSpace& space,
+void walk_group(const TreeMemory& tree, const WideRef& start, const GroupSpace& space,
                 const GroupLimits& limits, RayMask rays, const Leaf& leaf, const Few& few) {
     struct Waiting {
         RayMask mask;
@@ -196,13 +197,14 @@ void walk_group(const WideBvh& bvh, const WideRef& start, const GroupSpace& spac
             ++leaves;
             continue;
         }
-        const WideNode& node = bvh.nodes[ref.index()];
+        const WideNode& node = tree.node(ref);
         meet_group(space, node, space.t_least(), far, hits);
         for (std::size_t k = 0; k < hits.count; ++k) {
             const std::size_t i = hits.child[k];
             const RayMask mask = ((hits.by_all >> i) & 1u) != 0
                                      ? at.mask
                                      : meet_rays(space, limits, node, i, at.mask);
+            tree.fetch(node.ref(i));
             // Without a branch, as it can't be foretold.
             stack[waiting] = {mask, node.child[i], hits.enter[k], far, leaves};
             waiting += mask != 0 ? 1u : 0u;

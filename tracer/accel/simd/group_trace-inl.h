@@ -71,7 +71,7 @@ private:
 
     void enter_world(const GroupSpace& world, RayMask mask) {
         walk_group(
-            state_.top, state_.top.root, world, search_.limits_in(world), mask,
+            TreeMemory(state_.top), state_.top.root, world, search_.limits_in(world), mask,
             [&](const WideRef& leaf, RayMask met) HWY_ATTR {
                 each_index(state_.top, leaf, [&](std::uint32_t entry) HWY_ATTR {
                     enter(state_.entries[entry], world, met);
@@ -335,7 +335,7 @@ private:
     template <typename Leaf>
     HWY_INLINE void search_tree(const TopEntry& entry, const GroupSpace& space, RayMask mask,
                                 const Leaf& leaf) {
-        walk_group(state_.instances[entry.object].tree->bvh, entry.part, space,
+        walk_group(TreeMemory(*state_.instances[entry.object].tree), entry.part, space,
                    search_.limits_in(space), mask, leaf,
                    [&](const WideRef& part, RayMask met) HWY_ATTR {
                        few_in_tree({entry.object, part}, met);

@@ -14,6 +14,7 @@
 #include "tracer/accel/simd/ray_cones-inl.h"
 #include "tracer/accel/simd/ray_patches-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
+#include "tracer/accel/tree_memory.h"
 
 #include <algorithm>
 #include <array>
@@ -86,19 +87,12 @@ private:
     // So many make a loop worth its while.
     static constexpr std::size_t kLeaves = 8;
 
-    // What a tree's references stand for, in memory.
-    struct Stored {
-        const std::byte* first;
-        std::size_t size;  // of each
-    };
-
     // A ray on its way.
     struct Way {
         std::size_t ray;
         WideRef at;
-        const WideNode* nodes;         // of the tree that it is in
-        std::array<Stored, 2> stored;  // these, and what its leaves hold: by the leaf's bit
-        bool in_top;                   // it is in the top tree; else in an object's:
+        TreeMemory memory;  // of the tree that it is in
+        bool in_top;        // that is the top tree; else an object's:
         const PrimitiveTree* tree;
         const Instance* instance;
         std::uint32_t object;
@@ -143,7 +137,7 @@ private:
             nodes.count += 1 - is_leaf;
             leaves.count += is_leaf & (1 - in_top);
             objects.count += is_leaf & in_top;
-            fetch(way);
+            way.memory.fetch(way.at);
         }
         [[nodiscard]] bool empty() const { return nodes.count + leaves.count + objects.count == 0; }
         [[nodiscard]] bool few_leaves() const { return leaves.count + objects.count < kLeaves; }
@@ -165,7 +159,7 @@ private:
                 const std::size_t count = std::exchange(places.nodes.count, 0);
                 for (std::size_t i = 0; i < count; ++i) {
                     Way& way = *places.nodes.way[i];
-                    way.slabs->push_met(way.nodes[way.at.index()], way.t_min,
+                    way.slabs->push_met(way.memory.node(way.at), way.t_min,
                                         search_.limits.t_far[way.ray], way.stack);
                     go_on(way);
                 }
@@ -221,19 +215,10 @@ private:
         return true;
     }
 
-    static HWY_INLINE void fetch(const Way& way) {
-        const Stored& stored = way.stored[way.at.bits >> 31u];
-        const std::byte* line = stored.first + way.at.index() * stored.size;
-        for (std::size_t i = 0; i < 4; ++i)
-            __builtin_prefetch(line + 64 * i);
-    }
-
     void go_to_top(Way& way) const {
         way.in_top = true;
         way.base = 0;
-        way.nodes = state_.top.nodes.data();
-        way.stored[0] = stored_in(state_.top.nodes, 1);
-        way.stored[1] = stored_in(state_.top.indices, 1);
+        way.memory = TreeMemory(state_.top);
     }
 
     HWY_INLINE void enter_tree(Way& way, const TopEntry& entry) const {
@@ -241,23 +226,10 @@ private:
         way.object = entry.object;
         way.instance = &state_.instances[entry.object];
         way.tree = way.instance->tree;
-        way.nodes = way.tree->bvh.nodes.data();
-        way.stored[0] = stored_in(way.tree->bvh.nodes, 1);
+        way.memory = TreeMemory(*way.tree);
         way.of_set = !way.tree->bvh.indices.empty();
-        if (!way.of_set) {
-            way.stored[1] = stored_in(way.tree->patches.blocks, 1);
-        } else if (way.instance->joined()) {
-            way.stored[1] = stored_in(way.tree->elements.rows, way.tree->elements.stride);
-        } else {
-            way.stored[1] = stored_in(way.tree->bvh.indices, 1);
-        }
         way.base = way.stack.count;
         way.stack.push(-std::numeric_limits<float>::infinity(), entry.part.bits);
-    }
-
-    template <typename Array>
-    static HWY_INLINE Stored stored_in(const Array& array, std::size_t stride) {
-        return {reinterpret_cast<const std::byte*>(array.data()), stride * sizeof(array[0])};
     }
 
     // At a leaf of the top tree.
