@@ -23,42 +23,12 @@ inline constexpr int kFewRays = 4;
 inline constexpr float kGrowGroup = 1.0f + 8.0f * 5.9604645e-8f;
 inline constexpr float kShrinkGroup = 1.0f - 8.0f * 5.9604645e-8f;
 
-// The children that some ray of the group may meet before `t_far`, far ones first, and where it
-// would enter them at the earliest.
-struct BoxHits {
-    std::size_t count = 0;
-    HWY_ALIGN std::array<std::uint32_t, kWidth> child;  // its number
-    HWY_ALIGN std::array<float, kWidth> enter;
-    std::uint32_t by_all = 0;  // children that all lines meet, wherever on them, as a mask
-};
-
 // How a node's boxes lie along the group's rays, by child.
 struct BoxIntervals {
     HWY_ALIGN std::array<float, kWidth> near;
     HWY_ALIGN std::array<float, kWidth> far;
+    std::uint32_t by_all = 0;  // children that all lines meet, wherever on them, as a mask
 };
-
-HWY_INLINE void order_met(const WideNode& node, std::size_t octant, const BoxIntervals& boxes,
-                          BoxHits& hits) {
-#if HWY_TARGET <= HWY_AVX2
-    const Boxes d;
-    const FarToNear order(node, octant);
-    const auto near = order.of(hn::Load(d, boxes.near.data()));
-    const auto far = order.of(hn::Load(d, boxes.far.data()));
-    const Packing<Boxes> met(hn::Le(near, far));
-    hn::StoreU(met.of(near), d, hits.enter.data());
-    hn::StoreU(met.of(order.numbers()), FarToNear::Numbers(), hits.child.data());
-    hits.count = met.count();
-#else
-    hits.count = 0;
-    for (std::uint32_t order = node.far_to_near(octant), i = 0; i < kWidth; ++i, order >>= 3) {
-        const std::uint32_t child = order & 7u;
-        hits.child[hits.count] = child;
-        hits.enter[hits.count] = boxes.near[child];
-        hits.count += boxes.near[child] <= boxes.far[child] ? 1u : 0u;
-    }
-#endif
-}
 
 // Where the group's rays enter and leave, along one axis, what lies between each lane's two planes.
 template <class V>
@@ -83,10 +53,8 @@ HWY_INLINE SlabMet<V> meet_slabs(D d, const GroupSpace& space, std::size_t axis,
 }
 
 HWY_INLINE void meet_group(const GroupSpace& space, const WideNode& node, float t_min, float t_far,
-                           BoxHits& hits) {
+                           BoxIntervals& boxes) {
     const Boxes d;
-    BoxIntervals boxes;  // NOLINT: not initialised, as all are set
-    hits.by_all = 0;
     for (std::size_t i = 0; i < kWidth; i += kBoxesAtOnce) {
         auto near = hn::Set(d, t_min);
         auto far = hn::Set(d, t_far);
@@ -105,11 +73,10 @@ HWY_INLINE void meet_group(const GroupSpace& space, const WideNode& node, float 
         }
         near = hn::Mul(near, hn::Set(d, kShrinkGroup));
         far = hn::Mul(far, hn::Set(d, kGrowGroup));
-        if (space.one_origin) hits.by_all |= box_bits(hn::Le(last_near, first_far)) << i;
+        if (space.one_origin) boxes.by_all |= box_bits(hn::Le(last_near, first_far)) << i;
         hn::Store(near, d, boxes.near.data() + i);
         hn::Store(far, d, boxes.far.data() + i);
     }
-    order_met(node, space.octant, boxes, hits);
 }
 
 // Of the rays in `mask` those that may meet child i before their t_far.
@@ -165,50 +132,113 @@ HWY_INLINE float farthest(const GroupLimits& limits, RayMask mask) {
     return hn::GetLane(hn::MaxOfLanes(d, far));
 }
 
+// Children that some ray of a group may meet, in its way through a tree. Which rays do is asked
+// when their turn comes: most rays may end before. Not initialised, as it is large.
+struct WaitingChildren {
+    // Where children wait.
+    struct Parent {
+        const WideNode* node;
+        RayMask rays;  // that met it
+        float far;     // of those, when so many leaves had been searched:
+        std::uint32_t leaves;
+    };
+    struct Child {
+        WideRef ref;
+        float enter;  // its box, at the earliest
+        Parent& parent;
+        std::size_t number;  // of the parent's children
+        bool by_all;         // all of the parent's rays meet it
+    };
+
+    std::size_t count;
+    std::uint32_t ref[WideBvh::kMostWaiting];
+    float enter[WideBvh::kMostWaiting];
+    std::uint32_t place[WideBvh::kMostWaiting];  // number, by_all << 3, the parent's number << 4
+    Parent parent[Bvh::kMaxDepth + 1];
+
+    // Far ones first.
+    HWY_INLINE void push(const GroupSpace& space, const Parent& of) {
+        const std::uint32_t depth = count == 0 ? 0 : (place[count - 1] >> 4u) + 1;
+        parent[depth] = of;
+        const WideNode& node = *of.node;
+        BoxIntervals boxes;  // NOLINT: not initialised, as all are set
+        meet_group(space, node, space.t_least(), of.far, boxes);
+#if HWY_TARGET <= HWY_AVX2
+        const Boxes d;
+        const FarToNear::Numbers du;
+        const FarToNear order(node, space.octant);
+        const auto near = order.of(hn::Load(d, boxes.near.data()));
+        const Packing<Boxes> met(hn::Le(near, order.of(hn::Load(d, boxes.far.data()))));
+        const auto number = order.numbers();
+        const auto by_all = hn::And(hn::Shr(hn::Set(du, boxes.by_all), number), hn::Set(du, 1u));
+        const auto at = hn::Or(hn::Or(number, hn::ShiftLeft<3>(by_all)), hn::Set(du, depth << 4u));
+        hn::StoreU(met.of(order.of(hn::Load(du, node.child.data()))), du, ref + count);
+        hn::StoreU(met.of(near), d, enter + count);
+        hn::StoreU(met.of(at), du, place + count);
+        count += met.count();
+#else
+        std::uint32_t order = node.far_to_near(space.octant);
+        for (std::uint32_t i = 0; i < kWidth; ++i, order >>= 3) {
+            const std::uint32_t child = order & 7u;
+            ref[count] = node.child[child];
+            enter[count] = boxes.near[child];
+            place[count] = child | (boxes.by_all >> child & 1u) << 3u | depth << 4u;
+            count += boxes.near[child] <= boxes.far[child] ? 1u : 0u;
+        }
+#endif
+    }
+
+    // Those whose turn comes first. So many without a branch, as it can't be foretold how many
+    // wait.
+    HWY_INLINE void fetch_next(const TreeMemory& tree) const {
+        for (std::size_t i = 1; i <= 3; ++i)
+            tree.fetch({ref[count > i ? count - i : 0]});
+    }
+
+    HWY_INLINE Child pop() {
+        const std::uint32_t at = place[--count];
+        return {{ref[count]}, enter[count], parent[at >> 4u], at & 7u, (at & 8u) != 0};
+    }
+};
+
 // Calls leaf(ref, mask) for leaves that the rays may meet, near ones first, and few(ref, mask) for
 // what is left of the tree below a place where no more than kFewRays go on together.
 template <typename Leaf, typename Few>
 void walk_group(const TreeMemory& tree, const WideRef& start, const GroupSpace& space,
                 const GroupLimits& limits, RayMask rays, const Leaf& leaf, const Few& few) {
-    struct Waiting {
-        RayMask mask;
-        std::uint32_t ref;
-        float enter;
-        float far;  // of its rays, when `leaves` was as many
-        std::uint32_t leaves;
-    };
-    Waiting stack[WideBvh::kMostWaiting];  // NOLINT: not initialised, for it is large
-    std::size_t waiting = 0;
-    std::uint32_t leaves = 0;  // so many were there, and perhaps made the rays shorter
-    stack[waiting++] = {rays, start.bits, space.t_least(), farthest(limits, rays), leaves};
-    BoxHits hits;
-    while (waiting > 0) {
-        const Waiting at = stack[--waiting];
-        const float far = at.leaves == leaves ? at.far : farthest(limits, at.mask);
-        if (!(at.enter <= far)) continue;
-        const WideRef ref{at.ref};
-        if (ref.is_leaf()) {
-            leaf(ref, at.mask);
+    WaitingChildren waiting;  // NOLINT: not initialised, for it is large
+    waiting.count = 0;
+    waiting.ref[0] = start.bits;
+    std::uint32_t leaves = 0;  // so many were searched, and perhaps made the rays shorter
+    WideRef at = start;
+    float far = farthest(limits, rays);
+    if (!(space.t_least() <= far)) return;
+    for (;;) {
+        if (at.is_leaf()) {
+            leaf(at, rays);
             ++leaves;
-            continue;
-        }
-        if (std::popcount(at.mask) <= kFewRays) {
-            few(ref, at.mask);
+        } else if (std::popcount(rays) <= kFewRays) {
+            few(at, rays);
             ++leaves;
-            continue;
+        } else {
+            waiting.push(space, {&tree.node(at), rays, far, leaves});
+            waiting.fetch_next(tree);
         }
-        const WideNode& node = tree.node(ref);
-        meet_group(space, node, space.t_least(), far, hits);
-        for (std::size_t k = 0; k < hits.count; ++k) {
-            const std::size_t i = hits.child[k];
-            const RayMask mask = ((hits.by_all >> i) & 1u) != 0
-                                     ? at.mask
-                                     : meet_rays(space, limits, node, i, at.mask);
-            tree.fetch(node.ref(i));
-            // Without a branch, as it can't be foretold.
-            stack[waiting] = {mask, node.child[i], hits.enter[k], far, leaves};
-            waiting += mask != 0 ? 1u : 0u;
-        }
+        do {
+            if (waiting.count == 0) return;
+            const WaitingChildren::Child next = waiting.pop();
+            WaitingChildren::Parent& parent = next.parent;
+            if (parent.leaves != leaves) {
+                parent.far = farthest(limits, parent.rays);
+                parent.leaves = leaves;
+            }
+            far = parent.far;
+            rays = 0;
+            if (!(next.enter <= far)) continue;
+            at = next.ref;
+            rays = next.by_all ? parent.rays
+                               : meet_rays(space, limits, *parent.node, next.number, parent.rays);
+        } while (rays == 0);
     }
 }
 
