@@ -28,7 +28,7 @@ public:
     }
 
     // Tells the processor that what `ref` stands for is needed soon: a node, or what most leaves
-    // hold. Any `ref` will do; of what isn't there, nothing happens.
+    // hold. Nothing happens if it isn't there, as a child that a node doesn't have.
     HWY_INLINE void fetch(const WideRef& ref) const {
         const Part& part = parts_[ref.bits >> 31u];
         const std::byte* line = part.first + ref.index() * part.size;

@@ -138,8 +138,8 @@ struct WaitingChildren {
     // Where children wait.
     struct Parent {
         const WideNode* node;
-        RayMask rays;  // that met it
-        float far;     // of those, when so many leaves had been searched:
+        RayMask rays;  // that met it, some of which may have ended
+        float far;     // none of them went further, when so many leaves had been searched:
         std::uint32_t leaves;
     };
     struct Child {
@@ -208,7 +208,6 @@ void walk_group(const TreeMemory& tree, const WideRef& start, const GroupSpace& 
                 const GroupLimits& limits, RayMask rays, const Leaf& leaf, const Few& few) {
     WaitingChildren waiting;  // NOLINT: not initialised, for it is large
     waiting.count = 0;
-    waiting.ref[0] = start.bits;
     std::uint32_t leaves = 0;  // so many were searched, and perhaps made the rays shorter
     WideRef at = start;
     float far = farthest(limits, rays);
