@@ -92,14 +92,16 @@ void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::s
     });
 }
 
-// `end`: where the rays end, if it is not null.
+// `end`: where the rays end, if it is not null. `blockers`: of the chunks before.
 void any_of_chunk(const AccelState& state, std::span<const Ray> rays,
-                  std::span<std::uint8_t> blocked, const RayQuery& query, const glm::vec3* end) {
+                  std::span<std::uint8_t> blocked, const RayQuery& query, const glm::vec3* end,
+                  Blockers& blockers) {
     const Chunk chunk(state, rays, query);
     RayMask found = 0;
     const auto find = [&](const auto& follow) HWY_ATTR {
         AnyOfGroup search;
         search.limits = chunk.limits;
+        search.blockers = &blockers;
         follow(search);
         found |= search.blocked;
     };
@@ -135,8 +137,10 @@ void any_hits(const AccelState& state, std::span<const Ray> rays, std::span<std:
               const RayQuery& query, const glm::vec3* end) {
     // Rays backwards from there are of one origin, which is what triangles gain from.
     if (!state.mostly_triangles) end = nullptr;
+    Blockers blockers;
     std::size_t i = each_chunk(rays, [&](std::size_t first, std::size_t count) HWY_ATTR {
-        any_of_chunk(state, rays.subspan(first, count), blocked.subspan(first, count), query, end);
+        any_of_chunk(state, rays.subspan(first, count), blocked.subspan(first, count), query, end,
+                     blockers);
     });
     for (; i < rays.size(); ++i)
         blocked[i] = HWY_NAMESPACE::any_hit(state, rays[i], query) ? 1 : 0;

@@ -6,10 +6,18 @@
 #define RAYPICK_GROUP_SEARCH_INL_H
 #endif
 
+#include "tracer/accel/accel_state.h"
 #include "tracer/accel/searches.h"
 #include "tracer/accel/simd/decide_triangles-inl.h"
 #include "tracer/accel/simd/ray_group-inl.h"
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
 #include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
@@ -94,11 +102,40 @@ struct ClosestOfGroup {
     }
 };
 
+// Leaves that blocked rays of the groups before, and are likely to block the next group's, too
+// (Haines, Greenberg, "The Light Buffer: A Shadow-Testing Accelerator", 1986).
+class Blockers {
+public:
+    [[nodiscard]] std::span<const TopEntry> leaves() const { return {leaves_.data(), count_}; }
+
+    // `leaf` is given as a part of its object.
+    void add(const TopEntry& leaf) {
+        for (const TopEntry& known : leaves()) {
+            if (known.object == leaf.object && known.part.bits == leaf.part.bits) return;
+        }
+        leaves_[next_] = leaf;
+        next_ = (next_ + 1) % kMost;
+        count_ = std::min(count_ + 1, kMost);
+    }
+
+private:
+    static constexpr std::size_t kMost = 4;
+
+    std::array<TopEntry, kMost> leaves_;
+    std::size_t count_ = 0;
+    std::size_t next_ = 0;  // takes the oldest one's place
+};
+
 // Which rays of a group hit anything.
 struct AnyOfGroup {
+    // One that blocks fewer rays of a vector isn't worth being tried first.
+    static constexpr int kFewestBlocked = kAtOnce / 2;
+
     GroupLimits limits;
     GroupLimits back;  // of the same rays backwards; in use where they are followed so
     RayMask blocked = 0;
+    TopEntry leaf;                 // that is searched, while several rays are followed at a time
+    Blockers* blockers = nullptr;  // keeps such leaves, if it is not null
 
     [[nodiscard]] const GroupLimits& limits_in(const GroupSpace& space) const {
         return space.course.backwards() ? back : limits;
@@ -106,6 +143,8 @@ struct AnyOfGroup {
 
     void block(RayMask rays) {
         blocked |= rays;
+        if (kAtOnce > 1 && std::popcount(rays) >= kFewestBlocked && blockers != nullptr)
+            blockers->add(leaf);
         each_ray(rays, [&](std::size_t ray) HWY_ATTR {
             limits.t_far[ray] = -std::numeric_limits<float>::infinity();
             back.t_far[ray] = -std::numeric_limits<float>::infinity();

@@ -22,6 +22,7 @@
 
 #include <cstddef>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 HWY_BEFORE_NAMESPACE();
@@ -61,6 +62,8 @@ public:
     }
 
 private:
+    static constexpr bool kAny = std::is_same_v<Group, AnyOfGroup>;
+
     void run_back(const GroupBack& back, RayMask mask) {
         for (const std::uint32_t object : state_.unbounded)
             each_on_its_own({object, {}}, mask);
@@ -70,6 +73,10 @@ private:
     }
 
     void enter_world(const GroupSpace& world, RayMask mask) {
+        if constexpr (kAny) {
+            if (search_.blockers != nullptr && !search_.blockers->leaves().empty())
+                mask = search_blockers(world, mask);
+        }
         walk_group(
             TreeMemory(state_.top), state_.top.root, world, search_.limits_in(world), mask,
             [&](const WideRef& leaf, RayMask met) HWY_ATTR {
@@ -80,6 +87,17 @@ private:
             },
             [&](const WideRef& part, RayMask met)
                 HWY_ATTR { RaysApart(state_, rays_, query_, search_).run_down(part, met); });
+    }
+
+    // What blocked rays before; those leaves that do so again are kept. Returns the rays left.
+    HWY_NOINLINE RayMask search_blockers(const GroupSpace& world, RayMask mask) {
+        const Blockers before = std::exchange(*search_.blockers, {});
+        for (const TopEntry& leaf : before.leaves()) {
+            if (mask == 0) break;
+            enter(leaf, world, mask);
+            mask &= ~search_.blocked;
+        }
+        return mask;
     }
 
     void each_on_its_own(const TopEntry& entry, RayMask mask) {
@@ -335,11 +353,16 @@ private:
     template <typename Leaf>
     HWY_INLINE void search_tree(const TopEntry& entry, const GroupSpace& space, RayMask mask,
                                 const Leaf& leaf) {
-        walk_group(TreeMemory(*state_.instances[entry.object].tree), entry.part, space,
-                   search_.limits_in(space), mask, leaf,
-                   [&](const WideRef& part, RayMask met) HWY_ATTR {
-                       few_in_tree({entry.object, part}, met);
-                   });
+        walk_group(
+            TreeMemory(*state_.instances[entry.object].tree), entry.part, space,
+            search_.limits_in(space), mask,
+            [&](const WideRef& at, RayMask met) HWY_ATTR {
+                if constexpr (kAny) search_.leaf = {entry.object, at};
+                leaf(at, met);
+            },
+            [&](const WideRef& part, RayMask met) HWY_ATTR {
+                few_in_tree({entry.object, part}, met);
+            });
     }
 
     template <typename Shape>
