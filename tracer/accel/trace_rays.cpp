@@ -92,7 +92,8 @@ void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::s
     });
 }
 
-// `end`: where the rays end, if it is not null. `blockers`: of the chunks before.
+// `end`: where the rays end, if it is not null. `blockers`: of the chunks before, and then
+// of this one.
 void any_of_chunk(const AccelState& state, std::span<const Ray> rays,
                   std::span<std::uint8_t> blocked, const RayQuery& query, const glm::vec3* end,
                   Blockers& blockers) {

@@ -102,7 +102,7 @@ struct ClosestOfGroup {
     }
 };
 
-// Leaves that blocked rays of the groups before, and are likely to block the next group's, too
+// Leaves that blocked rays of the last groups, and are likely to block the next one's, too
 // (Haines, Greenberg, "The Light Buffer: A Shadow-Testing Accelerator", 1986).
 class Blockers {
 public:
@@ -128,8 +128,10 @@ private:
 
 // Which rays of a group hit anything.
 struct AnyOfGroup {
-    // One that blocks fewer rays of a vector isn't worth being tried first.
+    // A leaf that blocks fewer rays of a vector isn't worth being tried first. Never as few as are
+    // blocked where no leaf is searched, which is one at a time.
     static constexpr int kFewestBlocked = kAtOnce / 2;
+    static_assert(kAtOnce == 1 || kFewestBlocked > 1);
 
     GroupLimits limits;
     GroupLimits back;  // of the same rays backwards; in use where they are followed so

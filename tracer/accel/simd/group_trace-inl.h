@@ -62,6 +62,7 @@ public:
     }
 
 private:
+    // Others that are blocked, too, note what they cross on the way, and must meet it only once.
     static constexpr bool kAny = std::is_same_v<Group, AnyOfGroup>;
 
     void run_back(const GroupBack& back, RayMask mask) {
@@ -89,11 +90,15 @@ private:
                 HWY_ATTR { RaysApart(state_, rays_, query_, search_).run_down(part, met); });
     }
 
-    // What blocked rays before; those leaves that do so again are kept. Returns the rays left.
+    // What blocked rays before, as long as rays are left, which it returns. Leaves are kept that do
+    // so again or aren't needed.
     HWY_NOINLINE RayMask search_blockers(const GroupSpace& world, RayMask mask) {
         const Blockers before = std::exchange(*search_.blockers, {});
         for (const TopEntry& leaf : before.leaves()) {
-            if (mask == 0) break;
+            if (mask == 0) {
+                search_.blockers->add(leaf);
+                continue;
+            }
             enter(leaf, world, mask);
             mask &= ~search_.blocked;
         }
