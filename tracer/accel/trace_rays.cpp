@@ -92,8 +92,7 @@ void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::s
     });
 }
 
-// `end`: where the rays end, if it is not null. `blockers`: of the chunks before, and then
-// of this one.
+// `end`: where the rays end, if it is not null. `blockers`: of the chunks before; takes this one's.
 void any_of_chunk(const AccelState& state, std::span<const Ray> rays,
                   std::span<std::uint8_t> blocked, const RayQuery& query, const glm::vec3* end,
                   Blockers& blockers) {
