@@ -2,8 +2,9 @@
 //
 // Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013. The edge
 // functions of two triangles that share an edge are exact negatives of each other, so no ray slips
-// between them. Sums of three terms are taken by ascending magnitude, so that neither the winding
-// nor the first corner changes a bit of t.
+// between them. Sheared coordinates are left multiplied by the direction's largest component, which
+// takes a division less. Sums of three terms are symmetric, so that neither the winding nor the
+// first corner changes a bit of t.
 #pragma once
 
 #include "tracer/geometry/absolute.h"
@@ -12,6 +13,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -21,6 +23,7 @@ namespace raypick {
 // A ray in coordinates in which it runs along +z from 0.
 struct ShearedRay {
     glm::dvec3 origin{0.0};
+    glm::dvec3 direction{0.0, 0.0, 1.0};
     int kx = 0;
     int ky = 1;
     int kz = 2;
@@ -33,6 +36,7 @@ inline ShearedRay shear(const ObjectRay& ray) {
     const glm::dvec3 d = absolute(ray.direction);
     ShearedRay s;
     s.origin = ray.origin;
+    s.direction = ray.direction;
     s.kz = d.x > d.y ? (d.x > d.z ? 0 : 2) : (d.y > d.z ? 1 : 2);
     s.kx = (s.kz + 1) % 3;
     s.ky = (s.kx + 1) % 3;
@@ -43,12 +47,13 @@ inline ShearedRay shear(const ObjectRay& ray) {
     return s;
 }
 
-// The sum by ascending magnitude: the same whatever the order of the arguments.
-inline double ordered_sum(double a, double b, double c) {
-    if (std::abs(a) > std::abs(b)) std::swap(a, b);
-    if (std::abs(b) > std::abs(c)) std::swap(b, c);
-    if (std::abs(a) > std::abs(b)) std::swap(a, b);
-    return (a + b) + c;
+// The same whatever the order of the arguments, and the opposite if all of them are.
+inline double symmetric_sum(double a, double b, double c) {
+    const double lower = std::min(a, b);
+    const double higher = std::max(a, b);
+    const double middle = std::min(higher, c);
+    const double highest = std::max(higher, c);
+    return (std::min(lower, middle) + highest) + std::max(lower, middle);
 }
 
 struct TriangleHit {
@@ -64,28 +69,32 @@ inline std::optional<TriangleHit> intersect_triangle(const ShearedRay& ray, cons
     const glm::dvec3 pa = a - ray.origin;
     const glm::dvec3 pb = b - ray.origin;
     const glm::dvec3 pc = c - ray.origin;
-    const double ax = pa[ray.kx] - ray.sx * pa[ray.kz];
-    const double ay = pa[ray.ky] - ray.sy * pa[ray.kz];
-    const double bx = pb[ray.kx] - ray.sx * pb[ray.kz];
-    const double by = pb[ray.ky] - ray.sy * pb[ray.kz];
-    const double cx = pc[ray.kx] - ray.sx * pc[ray.kz];
-    const double cy = pc[ray.ky] - ray.sy * pc[ray.kz];
+    const double dz = ray.direction[ray.kz];
+    const auto across = [&](const glm::dvec3& p, int k) {
+        return p[k] * dz - ray.direction[k] * p[ray.kz];
+    };
+    const double ax = across(pa, ray.kx);
+    const double ay = across(pa, ray.ky);
+    const double bx = across(pb, ray.kx);
+    const double by = across(pb, ray.ky);
+    const double cx = across(pc, ray.kx);
+    const double cy = across(pc, ray.ky);
     const double u = cx * by - cy * bx;
     const double v = ax * cy - ay * cx;
     const double w = bx * ay - by * ax;
     const bool positive = u >= 0.0 && v >= 0.0 && w >= 0.0;
     const bool negative = u <= 0.0 && v <= 0.0 && w <= 0.0;
     if (!(positive || negative)) return std::nullopt;
-    const double determinant = ordered_sum(u, v, w);
+    const double determinant = symmetric_sum(u, v, w);
     if (!(std::abs(determinant) > 0.0)) return std::nullopt;
     // Corners on one line leave a determinant of rounding errors; this product is exact for floats.
     if (glm::cross(b - a, c - a) == glm::dvec3(0.0)) return std::nullopt;
-    const double scaled = ordered_sum(u * pa[ray.kz], v * pb[ray.kz], w * pc[ray.kz]);
-    const double inverse = 1.0 / determinant;
+    const double scaled = symmetric_sum(u * pa[ray.kz], v * pb[ray.kz], w * pc[ray.kz]);
+    const double inverse = 1.0 / (determinant * dz);
     TriangleHit hit;
-    hit.t = scaled * (ray.sz * inverse);
-    hit.u = v * inverse;
-    hit.v = w * inverse;
+    hit.t = scaled * inverse;
+    hit.u = v * (dz * inverse);
+    hit.v = w * (dz * inverse);
     hit.front_face = determinant > 0.0;
     return hit;
 }

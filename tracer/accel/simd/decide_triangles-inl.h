@@ -32,8 +32,24 @@ using Doubles = hn::CappedTag<double, 8>;
 using DoubleVector = hn::Vec<Doubles>;
 inline constexpr std::size_t kDoublesAtOnce = hn::MaxLanes(Doubles());
 
+// std::min and std::max, whatever the sign of a zero.
+HWY_INLINE DoubleVector smaller(DoubleVector a, DoubleVector b) {
+#if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR
+    return hn::Min(b, a);
+#else
+    return hn::IfThenElse(hn::Lt(b, a), b, a);
+#endif
+}
+HWY_INLINE DoubleVector larger(DoubleVector a, DoubleVector b) {
+#if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR
+    return hn::Max(b, a);
+#else
+    return hn::IfThenElse(hn::Lt(a, b), b, a);
+#endif
+}
+
 // As many neighbours in a group are decided where they are, without a row for each.
-inline constexpr int kWorthInPlace = static_cast<int>(kDoublesAtOnce + 1) / 2;
+inline constexpr int kWorthInPlace = kDoublesAtOnce > 2 ? 2 : 1;
 
 // By corner and axis; the fourth is nobody's.
 using TriangleCorners = std::array<std::array<float, 4>, 3>;
@@ -289,54 +305,54 @@ struct TriangleAnswers {
     [[nodiscard]] bool hits_front(std::size_t lane) const { return ((front >> lane) & 1) != 0; }
 };
 
-HWY_INLINE void swap_larger(DoubleVector& a, DoubleVector& b) {
-    const auto larger = hn::Gt(hn::Abs(a), hn::Abs(b));
-    const auto first = hn::IfThenElse(larger, b, a);
-    b = hn::IfThenElse(larger, a, b);
-    a = first;
-}
-
-HWY_INLINE DoubleVector ordered_sum(DoubleVector a, DoubleVector b, DoubleVector c) {
-    swap_larger(a, b);
-    swap_larger(b, c);
-    swap_larger(a, b);
-    return hn::Add(hn::Add(a, b), c);
+HWY_INLINE DoubleVector symmetric_sum(DoubleVector a, DoubleVector b, DoubleVector c) {
+    const auto lower = smaller(a, b);
+    const auto higher = larger(a, b);
+    const auto middle = smaller(higher, c);
+    const auto highest = larger(higher, c);
+    return hn::Add(hn::Add(smaller(lower, middle), highest), larger(lower, middle));
 }
 
 // For triangles with an area only: those of none are not recognised here.
 HWY_INLINE void decide(TriangleColumns columns, TriangleAnswers& answers) {
     const Doubles d;
-    const Shear shear(columns.direction);
+    const ShearedAxes axes(columns.direction);
+    const auto dx = axes.x_of(columns.direction);
+    const auto dy = axes.y_of(columns.direction);
+    const auto dz = axes.z_of(columns.direction);
     for (auto& corner : columns.corner) {
         for (std::size_t axis = 0; axis < 3; ++axis)
             corner[axis] = hn::Sub(corner[axis], columns.origin[axis]);
     }
-    const auto az = shear.axes.z_of(columns.corner[0]);
-    const auto bz = shear.axes.z_of(columns.corner[1]);
-    const auto cz = shear.axes.z_of(columns.corner[2]);
-    const auto ax = shear.across_x(columns.corner[0], az);
-    const auto ay = shear.across_y(columns.corner[0], az);
-    const auto bx = shear.across_x(columns.corner[1], bz);
-    const auto by = shear.across_y(columns.corner[1], bz);
-    const auto cx = shear.across_x(columns.corner[2], cz);
-    const auto cy = shear.across_y(columns.corner[2], cz);
+    const auto across = [&](DoubleVector aside, DoubleVector along, DoubleVector ahead)
+                            HWY_ATTR { return hn::Sub(hn::Mul(aside, dz), hn::Mul(along, ahead)); };
+    const auto az = axes.z_of(columns.corner[0]);
+    const auto bz = axes.z_of(columns.corner[1]);
+    const auto cz = axes.z_of(columns.corner[2]);
+    const auto ax = across(axes.x_of(columns.corner[0]), dx, az);
+    const auto ay = across(axes.y_of(columns.corner[0]), dy, az);
+    const auto bx = across(axes.x_of(columns.corner[1]), dx, bz);
+    const auto by = across(axes.y_of(columns.corner[1]), dy, bz);
+    const auto cx = across(axes.x_of(columns.corner[2]), dx, cz);
+    const auto cy = across(axes.y_of(columns.corner[2]), dy, cz);
     const auto u = hn::Sub(hn::Mul(cx, by), hn::Mul(cy, bx));
     const auto v = hn::Sub(hn::Mul(ax, cy), hn::Mul(ay, cx));
     const auto w = hn::Sub(hn::Mul(bx, ay), hn::Mul(by, ax));
     const auto zero = hn::Zero(d);
     const auto positive = hn::And(hn::And(hn::Ge(u, zero), hn::Ge(v, zero)), hn::Ge(w, zero));
     const auto negative = hn::And(hn::And(hn::Le(u, zero), hn::Le(v, zero)), hn::Le(w, zero));
-    const auto determinant = ordered_sum(u, v, w);
+    const auto determinant = symmetric_sum(u, v, w);
     const auto hit = hn::And(hn::Or(positive, negative), hn::Gt(hn::Abs(determinant), zero));
-    const auto scaled = ordered_sum(hn::Mul(u, az), hn::Mul(v, bz), hn::Mul(w, cz));
-    const auto inverse = hn::Div(hn::Set(d, 1.0), determinant);
+    const auto scaled = symmetric_sum(hn::Mul(u, az), hn::Mul(v, bz), hn::Mul(w, cz));
+    const auto inverse = hn::Div(hn::Set(d, 1.0), hn::Mul(determinant, dz));
     const hn::Rebind<float, Doubles> of_float;
     const auto store = [&](const DoubleVector& from, TriangleAnswers::Numbers& to) HWY_ATTR {
         hn::Store(hn::DemoteTo(of_float, from), of_float, to.data());
     };
-    store(hn::Mul(scaled, hn::Mul(shear.z, inverse)), answers.t);
-    store(hn::Mul(v, inverse), answers.u);
-    store(hn::Mul(w, inverse), answers.v);
+    const auto per_weight = hn::Mul(dz, inverse);
+    store(hn::Mul(scaled, inverse), answers.t);
+    store(hn::Mul(v, per_weight), answers.u);
+    store(hn::Mul(w, per_weight), answers.v);
     answers.hit = bits_of_mask(d, hit);
     answers.front = bits_of_mask(d, hn::Gt(determinant, zero));
 }

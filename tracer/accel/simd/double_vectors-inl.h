@@ -43,12 +43,6 @@ HWY_INLINE DoubleVector length(const DoubleVector3& a) {
 HWY_INLINE DoubleVector3 normalize(const DoubleVector3& a) {
     return times(hn::Div(hn::Set(Doubles(), 1.0), length(a)), a);
 }
-HWY_INLINE DoubleVector smaller(DoubleVector a, DoubleVector b) {
-    return hn::IfThenElse(hn::Lt(b, a), b, a);
-}
-HWY_INLINE DoubleVector larger(DoubleVector a, DoubleVector b) {
-    return hn::IfThenElse(hn::Lt(a, b), b, a);
-}
 
 }  // namespace raypick::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
