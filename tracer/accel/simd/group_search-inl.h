@@ -53,7 +53,8 @@ struct ClosestOfGroup {
     HWY_ALIGN GroupFloats candidate_from;  // t is at least this; infinite if there is none
     HWY_ALIGN std::array<std::uint32_t, kGroup> candidate;  // its place in `candidates`
     // Behind the shared ones each ray has a place of its own.
-    HWY_ALIGN std::array<Candidate, kMostCandidates + kGroup> candidates;
+    static constexpr std::size_t kPlaces = kMostCandidates + kGroup;
+    HWY_ALIGN std::array<Candidate, kPlaces> candidates;
     std::uint32_t candidate_count = 0;
     RayMask found = 0;         // rays with a candidate
     RayMask in_own_place = 0;  // rays that had their candidate there at some time

@@ -8,6 +8,7 @@
 
 #include "tracer/accel/simd/decide_triangles-inl.h"
 #include "tracer/accel/simd/group_search-inl.h"
+#include "tracer/accel/simd/hit_rows-inl.h"
 #include "tracer/accel/simd/mask_bits-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
 #include "tracer/accel/simd/sole_elements-inl.h"
@@ -70,7 +71,7 @@ public:
 
 private:
     using Lanes = hn::Rebind<float, Doubles>;
-    using NumberLanes = hn::Rebind<std::uint32_t, Doubles>;
+    using Places = hn::Vec<HitNumbers>;
     static constexpr RayMask kAllLanes = (RayMask{1} << kDoublesAtOnce) - 1;
 
     // Returns those that it was for, which have their hits now or are left for others to decide.
@@ -81,56 +82,70 @@ private:
             const RayMask some = (mask >> first) & kAllLanes;
             if (std::popcount(some) < kWorthInPlace) continue;
             done |= some << first;
-            decide_in_place(first, some, answers);
-            settle_some(first, some, answers);
+            const Places places = places_of(first, some);
+            decide_in_place(first, places, answers);
+            settle_some(first, some, places, answers);
         }
         return done;
     }
 
-    // The mask's rays whose triangle is kept in world space. Most rays share candidates, so that
-    // these are asked first.
-    [[nodiscard]] HWY_INLINE RayMask in_world(RayMask mask) const {
-        const auto fits = [](const Candidate& candidate) {
+    // The mask's rays whose triangle is kept in world space; notes what is hit with the candidates
+    // of all. Most rays share candidates, so that these are asked first.
+    [[nodiscard]] HWY_INLINE RayMask in_world(RayMask mask) {
+        const auto fits = [&](std::uint32_t place) HWY_ATTR {
+            const Candidate& candidate = search_.candidates[place];
+            objects_[place] = state_.scene->objects[candidate.object].id;
+            primitives_[place] = candidate.primitive;
             return candidate.instance != nullptr && candidate.instance->identity;
         };
         bool all_fit = true;
-        for (std::size_t i = 0; i < search_.candidate_count; ++i)
-            all_fit &= fits(search_.candidates[i]);
+        for (std::uint32_t place = 0; place < search_.candidate_count; ++place)
+            all_fit &= fits(place);
         RayMask result = mask;
         each_ray(mask & (all_fit ? search_.in_own_place : ~RayMask{0}),
                  [&](std::size_t ray) HWY_ATTR {
-                     if (!fits(search_.candidate_of(ray))) result &= ~(RayMask{1} << ray);
+                     if (!fits(search_.candidate[ray])) result &= ~(RayMask{1} << ray);
                  });
         return result;
     }
 
-    HWY_INLINE void decide_in_place(std::size_t first, RayMask mask, TriangleAnswers& answers) {
+    // Of the mask's candidates; of lanes that aren't in it, that of one that is.
+    [[nodiscard]] HWY_INLINE Places places_of(std::size_t first, RayMask mask) const {
+        const HitNumbers d;
         const auto some = static_cast<std::size_t>(std::countr_zero(mask));
-        const std::uint32_t one = search_.candidate[first + some];
-        const NumberLanes d;
-        const auto places = hn::LoadU(d, search_.candidate.data() + first);
-        if ((mask & ~bits_of_mask(d, hn::Eq(places, hn::Set(d, one)))) == 0) {
-            HWY_NAMESPACE::decide(TriangleColumns(world_, first, search_.candidates[one].corners),
-                                  answers);
+        return hn::IfThenElse(mask_of_bits(d, static_cast<std::uint32_t>(mask)),
+                              hn::LoadU(d, search_.candidate.data() + first),
+                              hn::Set(d, search_.candidate[first + some]));
+    }
+
+    HWY_INLINE void decide_in_place(std::size_t first, Places places, TriangleAnswers& answers) {
+        const HitNumbers d;
+        HWY_ALIGN std::array<std::uint32_t, kDoublesAtOnce> place;
+        hn::Store(places, d, place.data());
+        if (hn::AllTrue(d, hn::Eq(places, hn::Set(d, place[0])))) {
+            const TriangleCorners& corners = search_.candidates[place[0]].corners;
+            HWY_NAMESPACE::decide(TriangleColumns(world_, first, corners), answers);
             return;
         }
         CornersOfLanes corners;
-        for (std::size_t lane = 0; lane < kDoublesAtOnce; ++lane) {
-            const bool is_there = ((mask >> lane) & 1) != 0;
-            const std::uint32_t place = is_there ? search_.candidate[first + lane] : one;
-            corners[lane] = &search_.candidates[place].corners;
-        }
+        for (std::size_t lane = 0; lane < kDoublesAtOnce; ++lane)
+            corners[lane] = &search_.candidates[place[lane]].corners;
         HWY_NAMESPACE::decide(TriangleColumns(world_, first, corners), answers);
     }
 
-    HWY_INLINE void settle_some(std::size_t first, RayMask mask, const TriangleAnswers& answers) {
+    HWY_INLINE void settle_some(std::size_t first, RayMask mask, Places places,
+                                const TriangleAnswers& answers) {
         const Lanes d;
         const auto t = hn::Load(d, answers.t.data());
         const auto within = hn::And(hn::Gt(t, hn::LoadU(d, limits_.t_min.data() + first)),
                                     hn::Lt(t, hn::LoadU(d, limits_.t_far.data() + first)));
         const RayMask hit = mask & answers.hit & bits_of_mask(d, within);
         left_ |= (mask & ~hit) << first;
-        each_ray(hit, [&](std::size_t lane) HWY_ATTR { set_hit(first + lane, answers, lane); });
+        const HitNumbers numbers;
+        const auto index = hn::BitCast(hn::RebindToSigned<HitNumbers>(), places);
+        set_hits({hn::GatherIndex(numbers, objects_.data(), index),
+                  hn::GatherIndex(numbers, primitives_.data(), index), answers},
+                 hit, &hits_[first]);
     }
 
     HWY_INLINE bool set(std::size_t ray, TrianglePairs& pairs, std::size_t lane) {
@@ -160,10 +175,6 @@ private:
             left_ |= RayMask{1} << ray;
             return;
         }
-        set_hit(ray, answers, lane);
-    }
-
-    HWY_INLINE void set_hit(std::size_t ray, const TriangleAnswers& answers, std::size_t lane) {
         const Candidate& candidate = search_.candidate_of(ray);
         hits_[ray] = {state_.scene->objects[candidate.object].id,
                       candidate.primitive,
@@ -179,6 +190,9 @@ private:
     std::span<const Ray> rays_;
     std::span<Hit> hits_;
     RayMask left_ = 0;
+    // By candidate.
+    HWY_ALIGN std::array<std::uint32_t, ClosestOfGroup::kPlaces> objects_;  // ids
+    HWY_ALIGN std::array<std::uint32_t, ClosestOfGroup::kPlaces> primitives_;
 };
 
 // The hits of all rays that found something and aren't lost. `world` holds the rays, `limits` their
