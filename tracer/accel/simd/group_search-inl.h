@@ -148,9 +148,13 @@ struct AnyOfGroup {
         blocked |= rays;
         if (kAtOnce > 1 && std::popcount(rays) >= kFewestBlocked && blockers != nullptr)
             blockers->add(leaf);
-        each_ray(rays, [&](std::size_t ray) HWY_ATTR {
-            limits.t_far[ray] = -std::numeric_limits<float>::infinity();
-            back.t_far[ray] = -std::numeric_limits<float>::infinity();
+        const Rays d;
+        const auto nowhere = hn::Set(d, -std::numeric_limits<float>::infinity());
+        each_vector(rays, [&](std::size_t ray, RayMask bits) HWY_ATTR {
+            for (GroupFloats* t_far : {&limits.t_far, &back.t_far}) {
+                float* const at = t_far->data() + ray;
+                hn::Store(hn::IfThenElse(ray_mask(bits), nowhere, hn::Load(d, at)), d, at);
+            }
         });
     }
 };

@@ -116,6 +116,12 @@ struct GroupRays {
         }
     }
 
+    static float inverse_of(float along) {
+        const float exact = 1.0f / along;
+        return std::abs(exact) < kSteepest ? exact : std::copysign(kSteepest, along);
+    }
+
+    // By inverse_of().
     void invert() {
         const Rays d;
         const auto steepest = hn::Set(d, kSteepest);
@@ -215,16 +221,17 @@ struct GroupSpace {
     GroupSpace(const GroupRays& group, RayMask mask, float relative_slop, float reach,
                const GroupCourse& how = {})
         : rays(group), course(how) {
+        measure_origins(mask);
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            measure(rays.origin[axis], mask, origin_low[axis], origin_high[axis]);
-            measure(rays.inverse[axis], mask, inverse_low[axis], inverse_high[axis]);
             float& low = direction_low[axis];
             float& high = direction_high[axis];
             measure(rays.direction[axis], mask, low, high);
+            // In one octant they fall as directions rise.
+            inverse_low[axis] = GroupRays::inverse_of(high);
+            inverse_high[axis] = GroupRays::inverse_of(low);
             steepest_direction = std::max({steepest_direction, std::abs(low), std::abs(high)});
             reach = std::max({reach, std::abs(origin_low[axis]), std::abs(origin_high[axis])});
         }
-        one_origin = origin_low == origin_high;
         constexpr float kUnit = 0x1p-24f;
         forward_rounding = relative_slop > 0.0f ? reach : 0.0f;
         origin_rounding = forward_rounding + course.stray / (6.0f * kUnit);
@@ -249,11 +256,30 @@ struct GroupSpace {
     [[nodiscard]] float t_least() const { return -2.0f * course.slack; }
 
 private:
+    void measure_origins(RayMask mask) {
+        const auto some = static_cast<std::size_t>(std::countr_zero(mask));
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            origin_low[axis] = rays.origin[axis][some];
+        const Rays d;
+        RayMask elsewhere = 0;
+        every_vector(mask, [&](std::size_t i, RayMask bits) HWY_ATTR {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const auto origin = hn::Load(d, rays.origin[axis].data() + i);
+                elsewhere |= bits & ~ray_bits(hn::Eq(origin, hn::Set(d, origin_low[axis])));
+            }
+        });
+        origin_high = origin_low;
+        one_origin = elsewhere == 0;
+        if (one_origin) return;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            measure(rays.origin[axis], mask, origin_low[axis], origin_high[axis]);
+    }
+
     static void measure(const GroupFloats& numbers, RayMask mask, float& low, float& high) {
         const Rays d;
         auto least = hn::Set(d, std::numeric_limits<float>::infinity());
         auto most = hn::Neg(least);
-        each_vector(mask, [&](std::size_t i, RayMask bits) HWY_ATTR {
+        every_vector(mask, [&](std::size_t i, RayMask bits) HWY_ATTR {
             const auto there = ray_mask(bits);
             const auto some = hn::Load(d, numbers.data() + i);
             least = hn::Min(least, hn::IfThenElse(there, some, least));
