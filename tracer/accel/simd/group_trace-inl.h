@@ -20,7 +20,10 @@
 #include "tracer/accel/simd/rays_apart-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
 
+#include <array>
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -348,11 +351,22 @@ private:
             settle_.judge_patch(searched, space, triangles, patch, mask);
             return;
         }
+        PatchPairs pairs;
         for (; left != 0; left &= left - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(left));
-            judge_all(searched.object, space, searched.shown, GroupTriangle{triangles, patch, i},
-                      patch.primitives()[i], mask);
+            const GroupTriangle triangle{triangles, patch, i};
+            pairs.add(i, within_edges(space, triangle, searched.shown, mask));
         }
+        std::array<std::uint32_t, TrianglePatch::kMostTriangles> places;
+        places.fill(ClosestOfGroup::kMostCandidates);
+        const Instance& instance = state_.instances[searched.object];
+        pairs.each([&](std::size_t i, std::size_t ray, RayMask bits) HWY_ATTR {
+            const GroupTriangle triangle{triangles, patch, i};
+            Taken<GroupTriangle> taken{triangle, instance, searched.object, patch.primitives()[i],
+                                       places[i]};
+            judge_vector(space, searched.shown, ray, bits, taken);
+            places[i] = taken.place;
+        });
     }
 
     template <typename Leaf>
@@ -375,12 +389,18 @@ private:
                               const ShownSides& shown, const Shape& shape, std::uint32_t primitive,
                               RayMask mask) {
         Taken<Shape> taken{shape, state_.instances[object], object, primitive};
-        each_vector(mask, [&](std::size_t ray, RayMask bits) HWY_ATTR {
-            const Verdict verdict = judge_some(space, search_.limits, shape, shown, ray, bits);
-            const RayMask may = verdict.may & bits;
-            if (may == 0 || crossed(search_, object, primitive, may << ray)) return;
-            settle_.settle(space, verdict, ray, bits, taken);
-        });
+        each_vector(mask, [&](std::size_t ray, RayMask bits)
+                              HWY_ATTR { judge_vector(space, shown, ray, bits, taken); });
+    }
+
+    // `bits`: of the vector of rays from `ray` on.
+    template <typename Shape>
+    HWY_INLINE void judge_vector(const GroupSpace& space, const ShownSides& shown, std::size_t ray,
+                                 RayMask bits, Taken<Shape>& taken) {
+        const Verdict verdict = judge_some(space, search_.limits, taken.shape, shown, ray, bits);
+        const RayMask may = verdict.may & bits;
+        if (may == 0 || crossed(search_, taken.object, taken.primitive, may << ray)) return;
+        settle_.settle(space, verdict, ray, bits, taken);
     }
 
     const AccelState& state_;

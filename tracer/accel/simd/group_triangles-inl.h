@@ -295,6 +295,59 @@ HWY_INLINE Height<RayFloats> height_above(const GroupSpace& space, const GroupTr
             hn::MulAdd(reach, hn::Set(d, all.height_growth[i]), hn::Set(d, all.height_error[i]))};
 }
 
+// The mask's rays that may meet the triangle on a side that is shown, by their edge functions
+// alone.
+HWY_INLINE RayMask within_edges(const GroupSpace& space, const GroupTriangle& triangle,
+                                const ShownSides& shown, RayMask mask) {
+    const auto error = hn::Set(Rays(), triangle.all.edge_error[triangle.i]);
+    // Of the two that a ray is asked for, one may be given.
+    RayMask below = shown.back ? 0 : ~RayMask{0};
+    RayMask above = shown.front ? 0 : ~RayMask{0};
+    every_vector(mask, [&](std::size_t ray, RayMask /*bits*/) HWY_ATTR {
+        const EdgeBounded<Rays> edges(edge_functions(space, triangle, ray), error);
+        below |= ray_bits(edges.below()) << ray;
+        above |= ray_bits(edges.above()) << ray;
+    });
+    return mask & ~(below & above);
+}
+
+// Triangles of a patch, each with vectors of rays that may meet it. All in one list, and without a
+// branch: it can't be foretold how many there are of each.
+class PatchPairs {
+public:
+    HWY_INLINE void add(std::size_t triangle, RayMask rays) {
+        rays_[triangle] = rays;
+        if constexpr (kVectors > 8) {
+            each_vector(rays, [&](std::size_t ray, RayMask /*bits*/) HWY_ATTR {
+                pairs_[count_++] = static_cast<Pair>(triangle * kVectors + ray / kAtOnce);
+            });
+            return;
+        }
+        for (std::size_t k = 0; k < kVectors; ++k) {
+            pairs_[count_] = static_cast<Pair>(triangle * kVectors + k);
+            count_ += ((rays >> k * kAtOnce) & kAllAtOnce) != 0 ? 1u : 0u;
+        }
+    }
+
+    // Calls body(triangle, first ray, its rays from there on).
+    template <typename Body>
+    HWY_INLINE void each(const Body& body) const {
+        for (std::size_t i = 0; i < count_; ++i) {
+            const std::size_t triangle = pairs_[i] / kVectors;
+            const std::size_t ray = pairs_[i] % kVectors * kAtOnce;
+            body(triangle, ray, (rays_[triangle] >> ray) & kAllAtOnce);
+        }
+    }
+
+private:
+    static constexpr std::size_t kVectors = kGroup / kAtOnce;
+    using Pair = std::uint16_t;
+
+    std::array<RayMask, TrianglePatch::kMostTriangles> rays_;
+    std::array<Pair, TrianglePatch::kMostTriangles * kVectors> pairs_;
+    std::size_t count_ = 0;
+};
+
 // What the bounds say of a vector of rays.
 struct Verdict {
     RayMask may = 0;   // hit

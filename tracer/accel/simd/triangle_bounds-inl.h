@@ -55,13 +55,15 @@ public:
           most_(hn::Max(hn::Max(f.u, f.v), f.w)),
           error_(error) {}
 
-    // Arranged so that a NaN rules nothing out. A ray that meets the front goes against n.
+    // One of the functions surely is. Arranged so that a NaN rules nothing out.
+    [[nodiscard]] HWY_INLINE M below() const { return hn::Lt(least_, hn::Neg(error_)); }
+    [[nodiscard]] HWY_INLINE M above() const { return hn::Gt(most_, error_); }
+
+    // A ray that meets the front goes against n.
     [[nodiscard]] HWY_INLINE M misses(const ShownSides& shown) const {
-        const auto below = hn::Lt(least_, hn::Neg(error_));
-        const auto above = hn::Gt(most_, error_);
-        if (!shown.back) return above;
-        if (!shown.front) return below;
-        return hn::And(below, above);
+        if (!shown.back) return above();
+        if (!shown.front) return below();
+        return hn::And(below(), above());
     }
     [[nodiscard]] HWY_INLINE M surely_within() const {
         return hn::Or(hn::Gt(least_, error_), hn::Lt(most_, hn::Neg(error_)));
