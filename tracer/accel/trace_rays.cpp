@@ -5,6 +5,7 @@
 #include "tracer/accel/searches.h"
 #include "tracer/accel/simd/group_trace-inl.h"
 #include "tracer/accel/simd/group_winners-inl.h"
+#include "tracer/accel/simd/hit_rows-inl.h"
 #include "tracer/accel/simd/ray_chunk-inl.h"
 #include "tracer/accel/simd/rays_apart-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
@@ -86,7 +87,7 @@ void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::s
         find([&](ClosestOfGroup& search)
                  HWY_ATTR { RaysApart(state, rays, query, search).run(chunk.apart); });
     }
-    each_ray(missed, [&](std::size_t ray) HWY_ATTR { hits[ray] = Hit{}; });
+    set_missed(missed, hits.data());
     each_ray(alone, [&](std::size_t ray) HWY_ATTR {
         hits[ray] = HWY_NAMESPACE::closest_hit(state, rays[ray], query).value_or(Hit{});
     });

@@ -30,19 +30,32 @@ struct HitColumns {
 
 #if HWY_TARGET <= HWY_AVX3
 
+inline constexpr std::uint32_t kHitColumns = 6;
+inline constexpr std::uint32_t kHitRows = 8;
+static_assert(sizeof(Hit) == kHitColumns * 4 && offsetof(Hit, object) == 0 &&
+              offsetof(Hit, primitive) == 4 && offsetof(Hit, t) == 8 && offsetof(Hit, uv) == 12 &&
+              offsetof(Hit, front_face) == 20);
+
+// Sets the mask's rows to sixteen numbers at a time, of which part(k) gives the ones from 16 k on.
+template <typename Part>
+HWY_INLINE void store_rows(std::uint64_t mask, Hit* rows, const Part& part) {
+    const std::uint64_t numbers = _pdep_u64(mask, 0x041041041041) * 0x3f;  // six bits for each
+    auto* const to = reinterpret_cast<std::uint32_t*>(rows);
+    for (std::size_t k = 0; k < 3; ++k)
+        _mm512_mask_storeu_epi32(to + 16 * k, static_cast<__mmask16>(numbers >> (16 * k)), part(k));
+}
+
 // Where the numbers of eight hits in a row come from: two at a time are the halves of a vector.
 struct HitPlaces {
-    static constexpr std::uint32_t kColumns = 6;
-    static constexpr std::uint32_t kRows = 8;
     using Places = std::array<std::uint32_t, 16>;
 
     HWY_ALIGN std::array<Places, 3> of_first_four;  // columns
     HWY_ALIGN std::array<Places, 3> with_others;    // of what that makes and the last two columns
 
     constexpr HitPlaces() : of_first_four{}, with_others{} {
-        for (std::uint32_t k = 0; k < kColumns * kRows; ++k) {
-            const std::uint32_t column = k % kColumns;
-            const std::uint32_t at = column % 2 * kRows + k / kColumns;
+        for (std::uint32_t k = 0; k < kHitColumns * kHitRows; ++k) {
+            const std::uint32_t column = k % kHitColumns;
+            const std::uint32_t at = column % 2 * kHitRows + k / kHitColumns;
             const bool first_four = column < 4;
             of_first_four[k / 16][k % 16] = first_four ? at + column / 2 * 16 : 0;
             with_others[k / 16][k % 16] = first_four ? k % 16 : at + 16;
@@ -53,9 +66,6 @@ inline constexpr HitPlaces kHitPlaces;
 
 // Sets the hits of the mask's lanes.
 HWY_INLINE void set_hits(const HitColumns& columns, std::uint64_t mask, Hit* hits) {
-    static_assert(sizeof(Hit) == HitPlaces::kColumns * 4 && offsetof(Hit, object) == 0 &&
-                  offsetof(Hit, primitive) == 4 && offsetof(Hit, t) == 8 &&
-                  offsetof(Hit, uv) == 12 && offsetof(Hit, front_face) == 20);
     const HitNumbers half;
     const hn::CappedTag<std::uint32_t, 16> d;
     const auto load = [&](const TriangleAnswers::Numbers& numbers) HWY_ATTR {
@@ -66,15 +76,22 @@ HWY_INLINE void set_hits(const HitColumns& columns, std::uint64_t mask, Hit* hit
     const auto first = hn::Combine(d, columns.primitive, columns.object);
     const auto second = hn::Combine(d, load(columns.answers.u), load(columns.answers.t));
     const auto third = hn::Combine(d, front, load(columns.answers.v));
-    // Six bits for each of the mask's.
-    const std::uint64_t numbers = _pdep_u64(mask, 0x041041041041) * 0x3f;
-    auto* const to = reinterpret_cast<std::uint32_t*>(hits);
-    for (std::size_t k = 0; k < 3; ++k) {
+    store_rows(mask, hits, [&](std::size_t k) HWY_ATTR {
         const auto in_first_four = hn::Load(d, kHitPlaces.of_first_four[k].data());
         const auto in_all = hn::Load(d, kHitPlaces.with_others[k].data());
         const auto some = _mm512_permutex2var_epi32(first.raw, in_first_four.raw, second.raw);
-        const auto all = _mm512_permutex2var_epi32(some, in_all.raw, third.raw);
-        _mm512_mask_storeu_epi32(to + 16 * k, static_cast<__mmask16>(numbers >> (16 * k)), all);
+        return _mm512_permutex2var_epi32(some, in_all.raw, third.raw);
+    });
+}
+
+// Sets the hits of the mask's rays to none.
+HWY_INLINE void set_missed(RayMask mask, Hit* hits) {
+    static constexpr std::array<Hit, kHitRows> kNone{};
+    const hn::CappedTag<std::uint32_t, 16> d;
+    const auto* const none = reinterpret_cast<const std::uint32_t*>(kNone.data());
+    for (; mask != 0; mask >>= kHitRows, hits += kHitRows) {
+        store_rows(mask & 0xff, hits,
+                   [&](std::size_t k) HWY_ATTR { return hn::LoadU(d, none + 16 * k).raw; });
     }
 }
 
@@ -95,6 +112,10 @@ HWY_INLINE void set_hits(const HitColumns& columns, std::uint64_t mask, Hit* hit
                       {answers.u[lane], answers.v[lane]},
                       answers.hits_front(lane)};
     }
+}
+
+HWY_INLINE void set_missed(RayMask mask, Hit* hits) {
+    each_ray(mask, [&](std::size_t ray) HWY_ATTR { hits[ray] = Hit{}; });
 }
 
 #endif
