@@ -65,12 +65,17 @@ public:
 
     void run(Arrivals& arrivals) {
         arrivals.begin(scene_, rays_, hits_);
-        for (std::size_t i = 0; i < hits_.size(); ++i) {
-            if (!hits_[i].valid()) continue;
-            wanted_.insert(i);
-            if (const Arrivals::Block* full = arrivals.add(i)) {
+        for (std::size_t i = 0; i < hits_.size();) {
+            const std::size_t first = i;
+            const Arrivals::Block* full = arrivals.add(i);
+            for (std::size_t added = first; added < i; ++added)
+                wanted_.insert(added);
+            if (full != nullptr) {
                 EXPECT_TRUE(full->rows.full());
                 compare(arrivals, *full);
+            } else {
+                EXPECT_TRUE(i == hits_.size() || !hits_[i].valid());
+                ++i;
             }
         }
         while (const Arrivals::Block* rest = arrivals.rest())

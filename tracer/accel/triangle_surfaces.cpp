@@ -128,19 +128,6 @@ bool TriangleSurfaces::takes(const HitObject& at) {
            at.object_from_world.is_identity();
 }
 
-void TriangleSurfaces::add(std::size_t lane, const Mesh& mesh, const Hit& hit) {
-    float* const in = &in_.row[lane];
-    const glm::uvec3& corner = mesh.triangles[hit.primitive];
-    const bool smooth = !mesh.normals.empty();
-    for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t vertex = corner[static_cast<int>(k)];
-        put_vector<kLanes>(in, kCorners + 3 * k, mesh.positions[vertex]);
-        put_vector<kLanes>(in, kNormals + 3 * k, smooth ? mesh.normals[vertex] : glm::vec3(0.0f));
-    }
-    in[kU * kLanes] = hit.uv.x;
-    in[kV * kLanes] = hit.uv.y;
-}
-
 std::uint32_t TriangleSurfaces::find(SurfaceRows& rows) const {
     const std::uint32_t far = HWY_DYNAMIC_DISPATCH(find_triangles)(in_, rows);
     return ~far & ((1u << rows.count) - 1u);

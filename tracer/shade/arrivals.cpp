@@ -19,36 +19,59 @@ void Arrivals::begin(const ShadeScene& scene, std::span<const Ray> rays,
     }
 }
 
-const Arrivals::Block* Arrivals::add(std::size_t i) {
-    const Hit& hit = hits_[i];
-    if (parts_.empty() || !parts_.back().holds(hit)) parts_.push_back(part_at(*scene_, hit));
-    const KnownPart& part = parts_.back();
-    Gathered& gathered = gathered_[static_cast<std::size_t>(part.kind)];
-    Block& block = gathered.block;
-    if (gathered.handed_on) {
-        block.rows.clear();
-        gathered.handed_on = false;
+const Arrivals::Block* Arrivals::add(std::size_t& i) {
+    while (i < hits_.size() && hits_[i].valid()) {
+        if (parts_.empty() || !parts_.back().holds(hits_[i])) {
+            parts_.push_back(part_at(*scene_, hits_[i]));
+        }
+        const SurfaceKind kind = parts_.back().kind;
+        Gathered& gathered = gathered_[static_cast<std::size_t>(kind)];
+        if (gathered.handed_on) {
+            gathered.block.rows.clear();
+            gathered.handed_on = false;
+        }
+        i = add_run(gathered.block, i);
+        if (gathered.block.rows.full()) return hand_on(kind);
     }
+    return nullptr;
+}
+
+// Of hits from i on, as many as the block has room for and are on the last part. Returns the number
+// of the next.
+std::size_t Arrivals::add_run(Block& block, std::size_t i) {
     const Scene& scene = *scene_->scene;
-    const std::size_t lane = block.rows.add(rays_[i], hit);
-    block.hit[lane] = static_cast<std::uint32_t>(i);
-    block.part[lane] = static_cast<std::uint32_t>(parts_.size() - 1);
+    const KnownPart part = parts_.back();
+    const auto number = static_cast<std::uint32_t>(parts_.size() - 1);
+    const auto run = [&](const auto& add_to_lane) {
+        for (; i < hits_.size() && part.holds(hits_[i]) && !block.rows.full(); ++i) {
+            const std::size_t lane = block.rows.add(rays_[i], hits_[i]);
+            block.hit[lane] = static_cast<std::uint32_t>(i);
+            block.part[lane] = number;
+            add_to_lane(lane);
+        }
+    };
     switch (part.kind) {
         case SurfaceKind::triangle:
-            triangles_.add(lane, *part.mesh, hit);
+            run([&](std::size_t lane) { triangles_.add(lane, *part.mesh, hits_[i]); });
             break;
         case SurfaceKind::sphere:
-            spheres_.add(lane, scene, part.object->shape, hit.primitive);
+            run([&](std::size_t lane) {
+                spheres_.add(lane, scene, part.object->shape, hits_[i].primitive);
+            });
             break;
         case SurfaceKind::rectangle:
-            rectangles_.add(lane, scene, part.object->shape, hit.primitive);
+            run([&](std::size_t lane) {
+                rectangles_.add(lane, scene, part.object->shape, hits_[i].primitive);
+            });
             break;
         case SurfaceKind::other:
-            set_surface_point(scene, part.at(), rays_[i], hit, others_[lane]);
-            block.rows.put(lane, others_[lane]);
+            run([&](std::size_t lane) {
+                set_surface_point(scene, part.at(), rays_[i], hits_[i], others_[lane]);
+                block.rows.put(lane, others_[lane]);
+            });
             break;
     }
-    return block.rows.full() ? hand_on(part.kind) : nullptr;
+    return i;
 }
 
 const Arrivals::Block* Arrivals::rest() {

@@ -17,7 +17,7 @@
 namespace raypick {
 
 // Hands hits on in blocks of those on the same kind of shape, with what find_surface says of each,
-// to the bit: most are worked out together. First begin(), then add() for each hit, then rest()
+// to the bit: most are worked out together. First begin(), then add() for all hits, then rest()
 // until there is none. Keeps its memory.
 class Arrivals {
 public:
@@ -30,9 +30,10 @@ public:
 
     // The scene, the rays and their hits must be there until the last block has been handed on.
     void begin(const ShadeScene& scene, std::span<const Ray> rays, std::span<const Hit> hits);
-    // Of hit i, which must be valid. Returns the block that it fills, nullptr: it has room for
+    // Of hits from i on until one is not valid; i comes to be that one's number, or how many there
+    // are. Returns the block that one fills, with i behind that one; nullptr: they have room for
     // more. Blocks are valid until the next call of any of these.
-    const Block* add(std::size_t i);
+    const Block* add(std::size_t& i);
     // A block that isn't full; nullptr: there is none left.
     const Block* rest();
 
@@ -50,6 +51,7 @@ private:
         bool handed_on = true;
     };
 
+    std::size_t add_run(Block& block, std::size_t i);
     const Block* hand_on(SurfaceKind kind);
     void find_triangles(Block& block);
     void set_texture_uv(const KnownPart& part, const Hit& hit, SurfacePoint& surface);

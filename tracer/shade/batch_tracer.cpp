@@ -112,11 +112,11 @@ void BatchTracer::find_points(const Step& step) {
         if (step.depth == 1 && hidden == 0) note_first_hits(step.job);
         hidden_.clear();
         arrivals_.begin(step.job.scene, rays_, hits_);
-        for (std::size_t i = 0; i < at_work_.size(); ++i) {
-            if (!hits_[i].valid()) {
-                see_sky(step, step.at.paths[at_work_[i]], rays_[i]);
-            } else if (const Arrivals::Block* full = arrivals_.add(i)) {
+        for (std::size_t i = 0; i < at_work_.size();) {
+            if (const Arrivals::Block* full = arrivals_.add(i)) {
                 arrive(step, hidden, *full);
+            } else {
+                i = see_sky(step, i);
             }
         }
         while (const Arrivals::Block* rest = arrivals_.rest())
@@ -245,12 +245,18 @@ void BatchTracer::arrive(const Step& step, int hidden, const FoundHit& found, st
     }
 }
 
-void BatchTracer::see_sky(const Step& step, RayPath& path, const Ray& ray) {
+// Of the rays at work that hit nothing, from number i on until one hits something. Returns its
+// number.
+std::size_t BatchTracer::see_sky(const Step& step, std::size_t i) {
     const ShadeScene& scene = step.job.scene;
-    path.colour = sky_colour(scene, ray.direction, path.cone.spread);
-    if (const Interior* interior = step.at.interior_of(path)) {
-        path.colour *= passed(scene, interior->medium(*scene.scene), ray.t_max);
+    for (; i < hits_.size() && !hits_[i].valid(); ++i) {
+        RayPath& path = step.at.paths[at_work_[i]];
+        path.colour = sky_colour(scene, rays_[i].direction, path.cone.spread);
+        if (const Interior* interior = step.at.interior_of(path)) {
+            path.colour *= passed(scene, interior->medium(*scene.scene), rays_[i].t_max);
+        }
     }
+    return i;
 }
 
 // Rays of the next generation.

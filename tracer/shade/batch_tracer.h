@@ -74,7 +74,7 @@ private:
                        std::size_t i, std::size_t point);
     void arrive(const Step& step, int hidden, const FoundHit& found, std::size_t i,
                 std::size_t point);
-    static void see_sky(const Step& step, RayPath& path, const Ray& ray);
+    std::size_t see_sky(const Step& step, std::size_t i);
     void send_branches(const Step& step, std::uint32_t from, const ShadingPoint& point,
                        const Boundary& boundary);
     void want_mirrored(const Step& step, std::size_t point, const PreparedMaterial& material);
