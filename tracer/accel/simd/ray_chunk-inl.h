@@ -15,6 +15,7 @@
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include <hwy/highway.h>
@@ -73,9 +74,25 @@ struct Chunk {
 private:
     // A ray's numbers are eight in a row: origin, direction, t_min, t_max.
     HWY_INLINE void set_all(std::span<const Ray> rays) {
-#if HWY_TARGET != HWY_SCALAR
         static_assert(sizeof(Ray) == 8 * sizeof(float) && offsetof(Ray, direction) == 12 &&
                       offsetof(Ray, t_min) == 24 && offsetof(Ray, t_max) == 28);
+#if HWY_TARGET <= HWY_AVX3
+        for (std::size_t i = 0; i < kGroup; i += kAtOnce) {
+            const auto* const numbers = reinterpret_cast<const float*>(&rays[i]);
+            RayFloats a[4];  // numbers 0 to 3 of four rays each, number by number
+            RayFloats b[4];  // numbers 4 to 7
+            for (std::size_t k = 0; k < 4; ++k) {
+                const auto two = hn::LoadU(Rays(), numbers + 32 * k);
+                const auto more = hn::LoadU(Rays(), numbers + 32 * k + 16);
+                a[k] = pick(two, more, 0);
+                b[k] = pick(two, more, 4);
+            }
+            store_rows(a, {&world.origin[0][i], &world.origin[1][i], &world.origin[2][i],
+                           &world.direction[0][i]});
+            store_rows(b, {&world.direction[1][i], &world.direction[2][i], &limits.t_min[i],
+                           &limits.t_far[i]});
+        }
+#elif HWY_TARGET != HWY_SCALAR
         const Rays d;
         for (std::size_t i = 0; i < kGroup; i += kAtOnce) {
             // Of one half of them in turns: number k and number k + 4 of each ray.
@@ -98,6 +115,30 @@ private:
         (void)rays;
 #endif
     }
+
+#if HWY_TARGET <= HWY_AVX3
+    // Numbers from `first` on, four of each of the rays in two vectors, number by number.
+    HWY_INLINE static RayFloats pick(RayFloats two_rays, RayFloats two_more, std::uint32_t first) {
+        HWY_ALIGN static constexpr std::uint32_t kPlaces[16] = {0, 8,  16, 24, 1, 9,  17, 25,
+                                                                2, 10, 18, 26, 3, 11, 19, 27};
+        const hn::RebindToUnsigned<Rays> d;
+        const auto places = hn::Add(hn::Load(d, kPlaces), hn::Set(d, first));
+        return RayFloats{_mm512_permutex2var_ps(two_rays.raw, places.raw, two_more.raw)};
+    }
+
+    // Block k of all to row k.
+    HWY_INLINE static void store_rows(const RayFloats (&from)[4],
+                                      const std::array<float*, 4>& rows) {
+        const auto low_a = _mm512_shuffle_f32x4(from[0].raw, from[1].raw, 0x44);
+        const auto low_b = _mm512_shuffle_f32x4(from[2].raw, from[3].raw, 0x44);
+        const auto high_a = _mm512_shuffle_f32x4(from[0].raw, from[1].raw, 0xee);
+        const auto high_b = _mm512_shuffle_f32x4(from[2].raw, from[3].raw, 0xee);
+        _mm512_store_ps(rows[0], _mm512_shuffle_f32x4(low_a, low_b, 0x88));
+        _mm512_store_ps(rows[1], _mm512_shuffle_f32x4(low_a, low_b, 0xdd));
+        _mm512_store_ps(rows[2], _mm512_shuffle_f32x4(high_a, high_b, 0x88));
+        _mm512_store_ps(rows[3], _mm512_shuffle_f32x4(high_a, high_b, 0xdd));
+    }
+#endif
 
     HWY_INLINE void set(std::size_t i, const Ray& ray) {
         world.origin[0][i] = ray.origin.x;

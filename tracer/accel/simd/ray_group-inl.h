@@ -153,18 +153,23 @@ struct GroupRays {
     // component is between the two; arranged so that a NaN is not.
     [[nodiscard]] RayMask within(float reach, float least, float most) const {
         const Rays d;
+        // Magnitudes as numbers that NaNs are the largest of.
+        const hn::RebindToSigned<Rays> bits;
+        const auto bits_of = [&](float number)
+                                 HWY_ATTR { return hn::BitCast(bits, hn::Set(d, number)); };
         RayMask result = 0;
         for (std::size_t i = 0; i < kGroup; i += kAtOnce) {
-            auto steepest = hn::Zero(d);
-            auto fine = hn::Eq(steepest, steepest);
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const auto o = hn::Abs(hn::Load(d, origin[axis].data() + i));
-                const auto along = hn::Abs(hn::Load(d, direction[axis].data() + i));
-                fine = hn::And(
-                    fine, hn::And(hn::Lt(o, hn::Set(d, reach)), hn::Lt(along, hn::Set(d, most))));
-                steepest = hn::Max(steepest, along);
-            }
-            result |= ray_bits(hn::And(fine, hn::Gt(steepest, hn::Set(d, least)))) << i;
+            const auto largest = [&](const std::array<GroupFloats, 3>& v) HWY_ATTR {
+                const auto load = [&](std::size_t axis) HWY_ATTR {
+                    return hn::BitCast(bits, hn::Abs(hn::Load(d, v[axis].data() + i)));
+                };
+                return hn::Max(hn::Max(load(0), load(1)), load(2));
+            };
+            const auto steepest = largest(direction);
+            const auto steep =
+                hn::And(hn::Gt(steepest, bits_of(least)), hn::Lt(steepest, bits_of(most)));
+            const auto fine = hn::And(steep, hn::Lt(largest(origin), bits_of(reach)));
+            result |= ray_bits(hn::RebindMask(d, fine)) << i;
         }
         return result;
     }
