@@ -53,7 +53,8 @@ enum class Hits { some, perhaps };
 
 inline void expect_as_one_by_one(const Accel& accel, const std::vector<Ray>& rays,
                                  const RayQuery& query = {}, Hits wanted = Hits::some) {
-    std::vector<Hit> hits(rays.size());
+    // Of rays that miss, too, all is set.
+    std::vector<Hit> hits(rays.size(), Hit{3, 5, 0.5f, glm::vec2(0.25f), true});
     std::vector<std::uint8_t> blocked(rays.size(), 7);
     accel.intersect(rays, hits, query);
     accel.occluded(rays, blocked, query);

@@ -3,6 +3,7 @@
 #include "tests/random.h"
 #include "tests/tracer_scenes.h"
 #include "tracer/error.h"
+#include "tracer/geometry/triangle_test.h"
 
 #include <gtest/gtest.h>
 
@@ -289,6 +290,20 @@ TEST(TriangleShape, RandomHitsLieOnTheTriangle) {
             EXPECT_NEAR(hits[0].uv.y, v, 1e-9);
             expect_near(glm::normalize(hits[0].normal), glm::normalize(cross), 1e-9);
         }
+    }
+}
+
+// Where two terms are of one magnitude and the third is lost in either, too.
+TEST(TriangleShape, SumsAreTheSameInAnyOrder) {
+    for (const double small : {0x1p-54, 0x1.8p-54, 0x1p-53, 0.0, 1.0, 2.0}) {
+        std::array<double, 3> terms{-1.0, small, 1.0};
+        std::sort(terms.begin(), terms.end());
+        const double sum = symmetric_sum(terms[0], terms[1], terms[2]);
+        EXPECT_NEAR(sum, small, 0x1p-53);
+        do {
+            EXPECT_EQ(symmetric_sum(terms[0], terms[1], terms[2]), sum);
+            EXPECT_EQ(symmetric_sum(-terms[0], -terms[1], -terms[2]), -sum);
+        } while (std::next_permutation(terms.begin(), terms.end()));
     }
 }
 
