@@ -331,6 +331,35 @@ TEST(RectangleShape, NoRaySlipsThroughASharedEdge) {
     }
 }
 
+// Rays that pass the edge by as little as rounding does, with corners that both have to the bit.
+TEST(RectangleShape, NoRaySlipsBetweenItAndATriangle) {
+    int tested = 0;
+    for (std::uint64_t seed = 0; seed < 100000; ++seed) {
+        Random random(seed);
+        const auto on_grid = [&](int from, int to) {
+            return from + static_cast<int>(random.below(static_cast<std::uint64_t>(to - from)));
+        };
+        const glm::dvec3 a(on_grid(-9, 9), on_grid(-9, 9), on_grid(-9, 0));
+        const glm::dvec3 b = a + glm::dvec3(on_grid(1, 9), on_grid(-3, 4), on_grid(-3, 4));
+        const glm::dvec3 down(on_grid(-3, 4), on_grid(-9, 0), on_grid(-3, 4));
+        const glm::dvec3 up = a + glm::dvec3(on_grid(-3, 9), on_grid(1, 9), on_grid(-3, 4));
+        const glm::dvec3 on_edge = a + random.between(0.01, 0.99) * (b - a);
+        const glm::dvec3 from = on_edge + glm::dvec3(on_grid(-4, 5), on_grid(-4, 5), 9);
+        const ObjectRay ray{from, on_edge - from};
+        const auto height = [&](const glm::dvec3& p) {  // across what ray and edge lie in
+            return glm::dot(glm::cross(b - a, ray.direction), p - a);
+        };
+        // Else both lie on one side of that.
+        if (height(a + down) * height(up) > -1.0) continue;
+        ++tested;
+        EXPECT_GE(intersect(Rectangle{a, b - a, down}, ray).count +
+                      intersect(Triangle{a, b, up}, ray).count,
+                  1)
+            << seed;
+    }
+    EXPECT_GT(tested, 50000);
+}
+
 template <typename AnyShape>
 void expect_no_hit_of_nan(const AnyShape& shape) {
     for (int axis = 0; axis < 3; ++axis) {

@@ -28,13 +28,8 @@ std::optional<double> meet_plane(const ObjectRay& ray, const glm::dvec3& point,
 bool passes_within(const ObjectRay& ray, const std::array<glm::dvec3, 4>& corners) {
     const ShearedRay sheared = shear(ray);
     std::array<glm::dvec2, 4> p;
-    for (std::size_t i = 0; i < 4; ++i) {
-        // One by one: an index into what was just put together makes processors wait.
-        const auto from_ray = [&](int axis) { return corners[i][axis] - sheared.origin[axis]; };
-        const double ahead = from_ray(sheared.kz);
-        p[i] = {from_ray(sheared.kx) - sheared.sx * ahead,
-                from_ray(sheared.ky) - sheared.sy * ahead};
-    }
+    for (std::size_t i = 0; i < 4; ++i)
+        p[i] = sheared.across(corners[i]);
     bool left = true;
     bool right = true;
     for (std::size_t i = 0; i < 4; ++i) {

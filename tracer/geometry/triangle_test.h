@@ -2,15 +2,16 @@
 //
 // Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013. The edge
 // functions of two triangles that share an edge are exact negatives of each other, so no ray slips
-// between them. Sheared coordinates are left multiplied by the direction's largest component, which
-// takes a division less. Sums of three terms are symmetric, so that neither the winding nor the
-// first corner changes a bit of t.
+// between them. Sheared coordinates are left multiplied by the direction's largest component, so
+// that nothing is divided by it. Sums of three terms are symmetric, so that neither the winding nor
+// the first corner changes a bit of t.
 #pragma once
 
 #include "tracer/geometry/absolute.h"
 #include "tracer/geometry/shapes.h"
 
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <algorithm>
@@ -20,16 +21,25 @@
 
 namespace raypick {
 
-// A ray in coordinates in which it runs along +z from 0.
+// A ray that a shear turns into one along kz, the axis that it runs along most. The order of the
+// others keeps the winding of what is seen along it.
 struct ShearedRay {
     glm::dvec3 origin{0.0};
     glm::dvec3 direction{0.0, 0.0, 1.0};
     int kx = 0;
     int ky = 1;
     int kz = 2;
-    double sx = 0.0;
-    double sy = 0.0;
-    double sz = 1.0;
+
+    // How far ahead the point is along kz. One by one: an index into what was just put together
+    // makes processors wait.
+    [[nodiscard]] double ahead(const glm::dvec3& point) const { return point[kz] - origin[kz]; }
+    // Where it is seen along the ray, times the direction's component along kz.
+    [[nodiscard]] glm::dvec2 across(const glm::dvec3& point) const {
+        const auto seen = [&](int k) {
+            return (point[k] - origin[k]) * direction[kz] - direction[k] * ahead(point);
+        };
+        return {seen(kx), seen(ky)};
+    }
 };
 
 inline ShearedRay shear(const ObjectRay& ray) {
@@ -41,9 +51,6 @@ inline ShearedRay shear(const ObjectRay& ray) {
     s.kx = (s.kz + 1) % 3;
     s.ky = (s.kx + 1) % 3;
     if (ray.direction[s.kz] < 0.0) std::swap(s.kx, s.ky);  // keeps the winding
-    s.sz = 1.0 / ray.direction[s.kz];
-    s.sx = ray.direction[s.kx] * s.sz;
-    s.sy = ray.direction[s.ky] * s.sz;
     return s;
 }
 
@@ -66,22 +73,12 @@ struct TriangleHit {
 // Degenerate triangles, NaNs and rays in the triangle's plane miss.
 inline std::optional<TriangleHit> intersect_triangle(const ShearedRay& ray, const glm::dvec3& a,
                                                      const glm::dvec3& b, const glm::dvec3& c) {
-    const glm::dvec3 pa = a - ray.origin;
-    const glm::dvec3 pb = b - ray.origin;
-    const glm::dvec3 pc = c - ray.origin;
-    const double dz = ray.direction[ray.kz];
-    const auto across = [&](const glm::dvec3& p, int k) {
-        return p[k] * dz - ray.direction[k] * p[ray.kz];
-    };
-    const double ax = across(pa, ray.kx);
-    const double ay = across(pa, ray.ky);
-    const double bx = across(pb, ray.kx);
-    const double by = across(pb, ray.ky);
-    const double cx = across(pc, ray.kx);
-    const double cy = across(pc, ray.ky);
-    const double u = cx * by - cy * bx;
-    const double v = ax * cy - ay * cx;
-    const double w = bx * ay - by * ax;
+    const glm::dvec2 pa = ray.across(a);
+    const glm::dvec2 pb = ray.across(b);
+    const glm::dvec2 pc = ray.across(c);
+    const double u = pc.x * pb.y - pc.y * pb.x;
+    const double v = pa.x * pc.y - pa.y * pc.x;
+    const double w = pb.x * pa.y - pb.y * pa.x;
     const bool positive = u >= 0.0 && v >= 0.0 && w >= 0.0;
     const bool negative = u <= 0.0 && v <= 0.0 && w <= 0.0;
     if (!(positive || negative)) return std::nullopt;
@@ -89,7 +86,8 @@ inline std::optional<TriangleHit> intersect_triangle(const ShearedRay& ray, cons
     if (!(std::abs(determinant) > 0.0)) return std::nullopt;
     // Corners on one line leave a determinant of rounding errors; this product is exact for floats.
     if (glm::cross(b - a, c - a) == glm::dvec3(0.0)) return std::nullopt;
-    const double scaled = symmetric_sum(u * pa[ray.kz], v * pb[ray.kz], w * pc[ray.kz]);
+    const double scaled = symmetric_sum(u * ray.ahead(a), v * ray.ahead(b), w * ray.ahead(c));
+    const double dz = ray.direction[ray.kz];
     const double inverse = 1.0 / (determinant * dz);
     TriangleHit hit;
     hit.t = scaled * inverse;

@@ -267,23 +267,23 @@ private:
     }
 };
 
-// What shear() works out, by the same operations.
+// Rays as shear() has them: their directions, and ShearedRay::across by the same operations.
 struct Shear {
     ShearedAxes axes;
     DoubleVector x, y, z;
 
-    HWY_INLINE explicit Shear(const DoubleVector (&direction)[3]) : axes(direction) {
-        z = hn::Div(hn::Set(Doubles(), 1.0), axes.z_of(direction));
-        x = hn::Mul(axes.x_of(direction), z);
-        y = hn::Mul(axes.y_of(direction), z);
-    }
+    HWY_INLINE explicit Shear(const DoubleVector (&direction)[3])
+        : axes(direction),
+          x(axes.x_of(direction)),
+          y(axes.y_of(direction)),
+          z(axes.z_of(direction)) {}
 
-    // Across the ray, of a point seen from its origin that is `ahead` along it.
+    // Of a point seen from the ray's origin that is `ahead` along its last axis.
     HWY_INLINE DoubleVector across_x(const DoubleVector (&point)[3], DoubleVector ahead) const {
-        return hn::Sub(axes.x_of(point), hn::Mul(x, ahead));
+        return hn::Sub(hn::Mul(axes.x_of(point), z), hn::Mul(x, ahead));
     }
     HWY_INLINE DoubleVector across_y(const DoubleVector (&point)[3], DoubleVector ahead) const {
-        return hn::Sub(axes.y_of(point), hn::Mul(y, ahead));
+        return hn::Sub(hn::Mul(axes.y_of(point), z), hn::Mul(y, ahead));
     }
 };
 
@@ -316,25 +316,20 @@ HWY_INLINE DoubleVector symmetric_sum(DoubleVector a, DoubleVector b, DoubleVect
 // For triangles with an area only: those of none are not recognised here.
 HWY_INLINE void decide(TriangleColumns columns, TriangleAnswers& answers) {
     const Doubles d;
-    const ShearedAxes axes(columns.direction);
-    const auto dx = axes.x_of(columns.direction);
-    const auto dy = axes.y_of(columns.direction);
-    const auto dz = axes.z_of(columns.direction);
+    const Shear shear(columns.direction);
     for (auto& corner : columns.corner) {
         for (std::size_t axis = 0; axis < 3; ++axis)
             corner[axis] = hn::Sub(corner[axis], columns.origin[axis]);
     }
-    const auto across = [&](DoubleVector aside, DoubleVector along, DoubleVector ahead)
-                            HWY_ATTR { return hn::Sub(hn::Mul(aside, dz), hn::Mul(along, ahead)); };
-    const auto az = axes.z_of(columns.corner[0]);
-    const auto bz = axes.z_of(columns.corner[1]);
-    const auto cz = axes.z_of(columns.corner[2]);
-    const auto ax = across(axes.x_of(columns.corner[0]), dx, az);
-    const auto ay = across(axes.y_of(columns.corner[0]), dy, az);
-    const auto bx = across(axes.x_of(columns.corner[1]), dx, bz);
-    const auto by = across(axes.y_of(columns.corner[1]), dy, bz);
-    const auto cx = across(axes.x_of(columns.corner[2]), dx, cz);
-    const auto cy = across(axes.y_of(columns.corner[2]), dy, cz);
+    const auto az = shear.axes.z_of(columns.corner[0]);
+    const auto bz = shear.axes.z_of(columns.corner[1]);
+    const auto cz = shear.axes.z_of(columns.corner[2]);
+    const auto ax = shear.across_x(columns.corner[0], az);
+    const auto ay = shear.across_y(columns.corner[0], az);
+    const auto bx = shear.across_x(columns.corner[1], bz);
+    const auto by = shear.across_y(columns.corner[1], bz);
+    const auto cx = shear.across_x(columns.corner[2], cz);
+    const auto cy = shear.across_y(columns.corner[2], cz);
     const auto u = hn::Sub(hn::Mul(cx, by), hn::Mul(cy, bx));
     const auto v = hn::Sub(hn::Mul(ax, cy), hn::Mul(ay, cx));
     const auto w = hn::Sub(hn::Mul(bx, ay), hn::Mul(by, ax));
@@ -344,12 +339,12 @@ HWY_INLINE void decide(TriangleColumns columns, TriangleAnswers& answers) {
     const auto determinant = symmetric_sum(u, v, w);
     const auto hit = hn::And(hn::Or(positive, negative), hn::Gt(hn::Abs(determinant), zero));
     const auto scaled = symmetric_sum(hn::Mul(u, az), hn::Mul(v, bz), hn::Mul(w, cz));
-    const auto inverse = hn::Div(hn::Set(d, 1.0), hn::Mul(determinant, dz));
+    const auto inverse = hn::Div(hn::Set(d, 1.0), hn::Mul(determinant, shear.z));
     const hn::Rebind<float, Doubles> of_float;
     const auto store = [&](const DoubleVector& from, TriangleAnswers::Numbers& to) HWY_ATTR {
         hn::Store(hn::DemoteTo(of_float, from), of_float, to.data());
     };
-    const auto per_weight = hn::Mul(dz, inverse);
+    const auto per_weight = hn::Mul(shear.z, inverse);
     store(hn::Mul(scaled, inverse), answers.t);
     store(hn::Mul(v, per_weight), answers.u);
     store(hn::Mul(w, per_weight), answers.v);

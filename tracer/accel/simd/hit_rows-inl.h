@@ -1,4 +1,5 @@
-// Hits of rays side by side, all written at once. Included once for each instruction set.
+// Hits of rays side by side, written at once where the processor can. Included once for each
+// instruction set.
 #if defined(RAYPICK_HIT_ROWS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RAYPICK_HIT_ROWS_INL_H
 #undef RAYPICK_HIT_ROWS_INL_H
@@ -38,7 +39,7 @@ static_assert(sizeof(Hit) == kHitColumns * 4 && offsetof(Hit, object) == 0 &&
 
 // Sets the mask's rows to sixteen numbers at a time, of which part(k) gives the ones from 16 k on.
 template <typename Part>
-HWY_INLINE void store_rows(std::uint64_t mask, Hit* rows, const Part& part) {
+HWY_INLINE void set_rows(std::uint64_t mask, Hit* rows, const Part& part) {
     const std::uint64_t numbers = _pdep_u64(mask, 0x041041041041) * 0x3f;  // six bits for each
     auto* const to = reinterpret_cast<std::uint32_t*>(rows);
     for (std::size_t k = 0; k < 3; ++k)
@@ -76,7 +77,7 @@ HWY_INLINE void set_hits(const HitColumns& columns, std::uint64_t mask, Hit* hit
     const auto first = hn::Combine(d, columns.primitive, columns.object);
     const auto second = hn::Combine(d, load(columns.answers.u), load(columns.answers.t));
     const auto third = hn::Combine(d, front, load(columns.answers.v));
-    store_rows(mask, hits, [&](std::size_t k) HWY_ATTR {
+    set_rows(mask, hits, [&](std::size_t k) HWY_ATTR {
         const auto in_first_four = hn::Load(d, kHitPlaces.of_first_four[k].data());
         const auto in_all = hn::Load(d, kHitPlaces.with_others[k].data());
         const auto some = _mm512_permutex2var_epi32(first.raw, in_first_four.raw, second.raw);
@@ -89,9 +90,9 @@ HWY_INLINE void set_missed(RayMask mask, Hit* hits) {
     static constexpr std::array<Hit, kHitRows> kNone{};
     const hn::CappedTag<std::uint32_t, 16> d;
     const auto* const none = reinterpret_cast<const std::uint32_t*>(kNone.data());
-    for (; mask != 0; mask >>= kHitRows, hits += kHitRows) {
-        store_rows(mask & 0xff, hits,
-                   [&](std::size_t k) HWY_ATTR { return hn::LoadU(d, none + 16 * k).raw; });
+    for (std::size_t first = 0; mask != 0; mask >>= kHitRows, first += kHitRows) {
+        set_rows(mask & 0xff, hits + first,
+                 [&](std::size_t k) HWY_ATTR { return hn::LoadU(d, none + 16 * k).raw; });
     }
 }
 

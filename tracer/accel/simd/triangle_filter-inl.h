@@ -52,9 +52,9 @@ public:
           ox_(static_cast<float>(ray.origin[kx_])),
           oy_(static_cast<float>(ray.origin[ky_])),
           oz_(static_cast<float>(ray.origin[kz_])),
-          sx_(static_cast<float>(ray.sx)),
-          sy_(static_cast<float>(ray.sy)),
-          sz_(static_cast<float>(ray.sz)) {}
+          sx_(static_cast<float>(ray.direction[kx_] / ray.direction[kz_])),
+          sy_(static_cast<float>(ray.direction[ky_] / ray.direction[kz_])),
+          sz_(static_cast<float>(1.0 / ray.direction[kz_])) {}
 
     // Those of the patch that the ray may hit at a t of at most `limit`, as a mask. `reach` is the
     // largest coordinate of the origin and of the mesh.
