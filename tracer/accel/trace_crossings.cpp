@@ -6,10 +6,12 @@
 #include "tracer/accel/simd/group_crossings-inl.h"
 #include "tracer/accel/simd/group_trace-inl.h"
 #include "tracer/accel/simd/ray_chunk-inl.h"
+#include "tracer/accel/simd/ray_run-inl.h"
 #include "tracer/accel/trace_crossings.h"
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
@@ -36,14 +38,14 @@ void cross_one_by_one(const AccelState& state, RayMask mask, std::span<const Ray
 // The rays that are blocked; hits of all go into the room. `end`: where the rays end, if it is not
 // null.
 RayMask cross_chunk(const AccelState& state, std::span<const Ray> rays, const Clearness& clear,
-                    const RayQuery& query, const glm::vec3* end, CrossingRoom& room) {
+                    const RayQuery& query, const glm::vec3* end, RayRun& run, CrossingRoom& room) {
     const Chunk chunk(state, rays, query);
     RayMask blocked = 0;
     for (const RayMask mask : chunk.octants) {
         if (mask == 0) continue;
         CrossingsOfGroup search(*state.scene, clear, room.perhaps, room.hits);
         search.limits = chunk.limits;
-        GroupTrace(state, rays, query, search).run_towards(chunk, mask, end);
+        GroupTrace(state, rays, query, run, search).run_towards(chunk, mask, end);
         decide_crossed({state, rays, query, search});
         blocked |= search.blocked;
     }
@@ -93,10 +95,13 @@ void find_crossings(const AccelState& state, std::span<const Ray> rays, const Cl
     crossings.first.clear();
     if (!state.mostly_triangles) end = nullptr;  // as any_hits does
     CrossingRoom room;
+    std::optional<RayRun> run;
     for (std::size_t i = 0; i < rays.size(); i += kGroup) {
+        if (i % RayRun::kMostRays == 0) run.emplace(state, rays_of_run(rays, i), end);
         const std::size_t count = std::min(kGroup, rays.size() - i);
         room.hits.clear();
-        const RayMask blocked = cross_chunk(state, rays.subspan(i, count), clear, query, end, room);
+        const RayMask blocked =
+            cross_chunk(state, rays.subspan(i, count), clear, query, end, *run, room);
         append_chunk(blocked, count, room.hits, crossings);
     }
     crossings.first.push_back(static_cast<std::uint32_t>(crossings.hits.size()));

@@ -7,12 +7,14 @@
 #include "tracer/accel/simd/group_winners-inl.h"
 #include "tracer/accel/simd/hit_rows-inl.h"
 #include "tracer/accel/simd/ray_chunk-inl.h"
+#include "tracer/accel/simd/ray_run-inl.h"
 #include "tracer/accel/simd/rays_apart-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
 #include "tracer/accel/trace_rays.h"
 #include "tracer/error.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 HWY_BEFORE_NAMESPACE();
@@ -46,26 +48,29 @@ namespace {
 // Fewer rays than that are quicker one by one.
 constexpr std::size_t kFewestInChunk = 4;
 
-// Calls body(first, count) for one chunk of rays after the other, and returns where there are too
-// few left for one. The processor is told of the next while one is followed: by itself it foresees
-// no further than to the end of a page.
+// Calls body(first, count, run) for one chunk of rays after the other, and returns where there are
+// too few left for one. The processor is told of the next while one is followed: by itself it
+// foresees no further than to the end of a page. `end`: see RayRun.
 template <typename Body>
-HWY_INLINE std::size_t each_chunk(std::span<const Ray> rays, const Body& body) {
+HWY_INLINE std::size_t each_chunk(const AccelState& state, std::span<const Ray> rays,
+                                  const glm::vec3* end, const Body& body) {
     constexpr std::size_t kRaysInLine = 64 / sizeof(Ray);
+    std::optional<RayRun> run;
     std::size_t first = 0;
     while (rays.size() - first >= kFewestInChunk) {
         const std::size_t count = std::min(kGroup, rays.size() - first);
         const std::size_t next = first + count;
+        if (first % RayRun::kMostRays == 0) run.emplace(state, rays_of_run(rays, first), end);
         for (std::size_t i = next; i < std::min(next + kGroup, rays.size()); i += kRaysInLine)
             __builtin_prefetch(&rays[i]);
-        body(first, count);
+        body(first, count, *run);
         first = next;
     }
     return first;
 }
 
 void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::span<Hit> hits,
-                      const RayQuery& query) {
+                      const RayQuery& query, RayRun& run) {
     const Chunk chunk(state, rays, query);
     RayMask alone = chunk.alone;
     RayMask missed = first_rays(rays.size());
@@ -81,7 +86,7 @@ void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::s
     for (const RayMask mask : chunk.octants) {
         if (mask == 0) continue;
         find([&](ClosestOfGroup& search)
-                 HWY_ATTR { GroupTrace(state, rays, query, search).run(chunk.world, mask); });
+                 HWY_ATTR { GroupTrace(state, rays, query, run, search).run(chunk.world, mask); });
     }
     if (chunk.apart != 0) {
         find([&](ClosestOfGroup& search)
@@ -96,7 +101,7 @@ void closest_of_chunk(const AccelState& state, std::span<const Ray> rays, std::s
 // `end`: where the rays end, if it is not null. `blockers`: of the chunks before; takes this one's.
 void any_of_chunk(const AccelState& state, std::span<const Ray> rays,
                   std::span<std::uint8_t> blocked, const RayQuery& query, const glm::vec3* end,
-                  Blockers& blockers) {
+                  Blockers& blockers, RayRun& run) {
     const Chunk chunk(state, rays, query);
     RayMask found = 0;
     const auto find = [&](const auto& follow) HWY_ATTR {
@@ -109,7 +114,7 @@ void any_of_chunk(const AccelState& state, std::span<const Ray> rays,
     for (const RayMask mask : chunk.octants) {
         if (mask == 0) continue;
         find([&](AnyOfGroup& search) HWY_ATTR {
-            GroupTrace(state, rays, query, search).run_towards(chunk, mask, end);
+            GroupTrace(state, rays, query, run, search).run_towards(chunk, mask, end);
         });
     }
     if (chunk.apart != 0) {
@@ -127,9 +132,10 @@ void any_of_chunk(const AccelState& state, std::span<const Ray> rays,
 
 void closest_hits(const AccelState& state, std::span<const Ray> rays, std::span<Hit> hits,
                   const RayQuery& query) {
-    std::size_t i = each_chunk(rays, [&](std::size_t first, std::size_t count) HWY_ATTR {
-        closest_of_chunk(state, rays.subspan(first, count), hits.subspan(first, count), query);
-    });
+    const auto follow = [&](std::size_t first, std::size_t count, RayRun& run) HWY_ATTR {
+        closest_of_chunk(state, rays.subspan(first, count), hits.subspan(first, count), query, run);
+    };
+    std::size_t i = each_chunk(state, rays, nullptr, follow);
     for (; i < rays.size(); ++i)
         hits[i] = HWY_NAMESPACE::closest_hit(state, rays[i], query).value_or(Hit{});
 }
@@ -139,10 +145,11 @@ void any_hits(const AccelState& state, std::span<const Ray> rays, std::span<std:
     // Rays backwards from there are of one origin, which is what triangles gain from.
     if (!state.mostly_triangles) end = nullptr;
     Blockers blockers;
-    std::size_t i = each_chunk(rays, [&](std::size_t first, std::size_t count) HWY_ATTR {
+    const auto follow = [&](std::size_t first, std::size_t count, RayRun& run) HWY_ATTR {
         any_of_chunk(state, rays.subspan(first, count), blocked.subspan(first, count), query, end,
-                     blockers);
-    });
+                     blockers, run);
+    };
+    std::size_t i = each_chunk(state, rays, end, follow);
     for (; i < rays.size(); ++i)
         blocked[i] = HWY_NAMESPACE::any_hit(state, rays[i], query) ? 1 : 0;
 }

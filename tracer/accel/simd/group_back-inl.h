@@ -32,6 +32,12 @@ struct GroupBack {
     GroupRays rays;
     GroupCourse course;
 
+    // Of the courses there can be.
+    static float most_stray(float reach) {
+        return (kFarthestEnd + 2.0f) * reach * kMostStray * 0x1p-24f;
+    }
+    static float most_slack(float reach) { return 33.0f * 0x1p-24f * kFarthestEnd * reach; }
+
     // Takes the mask's rays, with the limits that they have backwards. False, and nothing can be
     // said of the rest, if they don't end there or lie so that little would be gained; arranged so
     // that a NaN makes it false. `reach` is the largest coordinate of what is to be met.

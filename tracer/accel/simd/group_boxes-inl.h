@@ -13,6 +13,15 @@
 #include "tracer/accel/simd/ray_group-inl.h"
 #include "tracer/accel/tree_memory.h"
 
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <utility>
+
 HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -38,7 +47,7 @@ struct SlabMet {
 };
 
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE SlabMet<V> meet_slabs(D d, const GroupSpace& space, std::size_t axis,
+HWY_INLINE SlabMet<V> meet_slabs(D d, const GroupBounds& space, std::size_t axis,
                                  const V& first_plane, const V& second_plane) {
     const auto low = hn::Set(d, space.inverse_low[axis]);
     const auto high = hn::Set(d, space.inverse_high[axis]);
@@ -52,7 +61,7 @@ HWY_INLINE SlabMet<V> meet_slabs(D d, const GroupSpace& space, std::size_t axis,
             hn::Max(far_low, far_high)};
 }
 
-HWY_INLINE void meet_group(const GroupSpace& space, const WideNode& node, float t_min, float t_far,
+HWY_INLINE void meet_group(const GroupBounds& space, const WideNode& node, float t_min, float t_far,
                            BoxIntervals& boxes) {
     const Boxes d;
     for (std::size_t i = 0; i < kWidth; i += kBoxesAtOnce) {
@@ -78,6 +87,88 @@ HWY_INLINE void meet_group(const GroupSpace& space, const WideNode& node, float 
         hn::Store(far, d, boxes.far.data() + i);
     }
 }
+
+// Places in a tree that lie in the way of many groups, so that each can begin there and not at the
+// root: nodes that are of no tree, whose children are these places. Not initialised, as it is
+// large.
+//
+// Source: Reshetov et al. 2005 (see above), which has a single one.
+struct EntryPoints {
+    static constexpr std::size_t kMost = 32;
+    static constexpr std::size_t kMostNodes = kMost / kWidth;
+
+    std::array<WideNode, kMostNodes>
+        nodes;          // from near to far, and their children from far to near
+    std::size_t count;  // of them
+
+    // Of what lies below `start` and rays within the bounds may meet from t_least on. Nodes are
+    // opened level by level, near ones first, as long as there is room.
+    EntryPoints(const TreeMemory& tree, const WideRef& start, const GroupBounds& bounds,
+                float t_least) {
+        std::array<Place, kMost + 1> places[2];  // NOLINT: not initialised
+        std::size_t found = open(tree.node(start), bounds, t_least, places[0].data());
+        std::size_t now = 0;
+        for (bool opened = true; opened; now = 1 - now) {
+            opened = false;
+            const std::size_t before = std::exchange(found, 0);
+            for (std::size_t i = 0; i < before; ++i) {
+                const Place& place = places[now][i];
+                Place* const to = places[1 - now].data() + found;
+                const WideRef ref = place.node->ref(place.child);
+                if (ref.is_leaf() || found + kWidth + (before - i - 1) > kMost) {
+                    *to = place;
+                    ++found;
+                } else {
+                    found += open(tree.node(ref), bounds, t_least, to);
+                    opened = true;
+                }
+            }
+        }
+        gather(places[now].data(), found);
+    }
+
+private:
+    struct Place {
+        const WideNode* node;
+        std::uint32_t child;
+    };
+
+    // The children that are met, near ones first. Writes one more than there are.
+    static std::size_t open(const WideNode& node, const GroupBounds& bounds, float t_least,
+                            Place* to) {
+        BoxIntervals boxes;  // NOLINT: not initialised, as all are set
+        meet_group(bounds, node, t_least, std::numeric_limits<float>::infinity(), boxes);
+        const std::uint32_t order = node.far_to_near(bounds.octant);
+        std::size_t count = 0;
+        for (std::uint32_t i = kWidth; i-- > 0;) {
+            const std::uint32_t child = order >> 3 * i & 7u;
+            to[count] = {&node, child};
+            count += boxes.near[child] <= boxes.far[child] ? 1u : 0u;
+        }
+        return count;
+    }
+
+    void gather(const Place* places, std::size_t found) {
+        constexpr std::uint32_t kInOrder = 076543210;
+        count = (found + kWidth - 1) / kWidth;
+        for (std::size_t n = 0; n < count; ++n) {
+            WideNode& node = nodes[n];
+            for (std::size_t octant = 0; octant < 8; ++octant)
+                std::memcpy(node.order.data() + 3 * octant, &kInOrder, sizeof kInOrder);
+            for (std::size_t i = 0; i < kWidth; ++i) {
+                const std::size_t k = kWidth * n + kWidth - 1 - i;
+                const bool there = k < found;
+                for (std::size_t plane = 0; plane < 6; ++plane) {
+                    node.planes[plane][i] =
+                        there ? places[k].node->planes[plane][places[k].child]
+                              : std::copysign(std::numeric_limits<float>::infinity(),
+                                              plane < 3 ? 1.0f : -1.0f);
+                }
+                node.child[i] = there ? places[k].node->child[places[k].child] : WideRef::kNothing;
+            }
+        }
+    }
+};
 
 // Of the rays in `mask` those that may meet child i before their t_far.
 HWY_INLINE RayMask meet_rays(const GroupSpace& space, const GroupLimits& limits,
@@ -135,6 +226,10 @@ HWY_INLINE float farthest(const GroupLimits& limits, RayMask mask) {
 // Children that some ray of a group may meet, in its way through a tree. Which rays do is asked
 // when their turn comes: most rays may end before. Not initialised, as it is large.
 struct WaitingChildren {
+    // Of the tree, and those of a list of ways in.
+    static constexpr std::size_t kMostParents = Bvh::kMaxDepth + 1 + EntryPoints::kMostNodes;
+    static constexpr std::size_t kMost = WideBvh::kMostWaiting + EntryPoints::kMost;
+
     // Where children wait.
     struct Parent {
         const WideNode* node;
@@ -151,10 +246,10 @@ struct WaitingChildren {
     };
 
     std::size_t count;
-    std::uint32_t ref[WideBvh::kMostWaiting];
-    float enter[WideBvh::kMostWaiting];
-    std::uint32_t place[WideBvh::kMostWaiting];  // number, by_all << 3, the parent's number << 4
-    Parent parent[Bvh::kMaxDepth + 1];
+    std::uint32_t ref[kMost];
+    float enter[kMost];
+    std::uint32_t place[kMost];  // number, by_all << 3, the parent's number << 4
+    Parent parent[kMostParents];
 
     // Far ones first.
     HWY_INLINE void push(const GroupSpace& space, const Parent& of) {
@@ -204,16 +299,23 @@ struct WaitingChildren {
 // Calls leaf(ref, mask) for leaves that the rays may meet, near ones first, and few(ref, mask) for
 // what is left of the tree below a place where no more than kFewRays go on together.
 template <typename Leaf, typename Few>
-void walk_group(const TreeMemory& tree, const WideRef& start, const GroupSpace& space,
-                const GroupLimits& limits, RayMask rays, const Leaf& leaf, const Few& few) {
+std::uint32_t walk_group(const TreeMemory& tree, const WideRef& start, const EntryPoints* points,
+                         const GroupSpace& space, const GroupLimits& limits, RayMask rays,
+                         const Leaf& leaf, const Few& few) {
     WaitingChildren waiting;  // NOLINT: not initialised, for it is large
     waiting.count = 0;
+    std::uint32_t opened = 0;  // nodes
     std::uint32_t leaves = 0;  // so many were searched, and perhaps made the rays shorter
     WideRef at = start;
     float far = farthest(limits, rays);
-    if (!(space.t_least() <= far)) return;
+    if (!(space.t_least() <= far)) return opened;
     for (;;) {
-        if (at.is_leaf()) {
+        if (points != nullptr) {
+            for (std::size_t i = points->count; i-- > 0;)
+                waiting.push(space, {&points->nodes[i], rays, far, leaves});
+            waiting.fetch_next(tree);
+            points = nullptr;
+        } else if (at.is_leaf()) {
             leaf(at, rays);
             ++leaves;
         } else if (std::popcount(rays) <= kFewRays) {
@@ -222,9 +324,10 @@ void walk_group(const TreeMemory& tree, const WideRef& start, const GroupSpace& 
         } else {
             waiting.push(space, {&tree.node(at), rays, far, leaves});
             waiting.fetch_next(tree);
+            ++opened;
         }
         do {
-            if (waiting.count == 0) return;
+            if (waiting.count == 0) return opened;
             const WaitingChildren::Child next = waiting.pop();
             WaitingChildren::Parent& parent = next.parent;
             if (parent.leaves != leaves) {

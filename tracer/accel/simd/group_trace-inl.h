@@ -17,6 +17,7 @@
 #include "tracer/accel/simd/group_spheres-inl.h"
 #include "tracer/accel/simd/group_triangles-inl.h"
 #include "tracer/accel/simd/ray_chunk-inl.h"
+#include "tracer/accel/simd/ray_run-inl.h"
 #include "tracer/accel/simd/rays_apart-inl.h"
 #include "tracer/accel/simd/single_ray-inl.h"
 
@@ -35,11 +36,13 @@ namespace raypick::HWY_NAMESPACE {
 template <typename Group>
 class GroupTrace {
 public:
+    // The rays are some of the run's.
     GroupTrace(const AccelState& state, std::span<const Ray> rays, const RayQuery& query,
-               Group& search)
+               RayRun& run, Group& search)
         : state_(state),
           rays_(rays),
           query_(query),
+          run_(run),
           search_(search),
           settle_(state, rays, query, search) {}
 
@@ -81,8 +84,8 @@ private:
             if (search_.blockers != nullptr && !search_.blockers->leaves().empty())
                 mask = search_blockers(world, mask);
         }
-        walk_group(
-            TreeMemory(state_.top), state_.top.root, world, search_.limits_in(world), mask,
+        walk(
+            TreeMemory(state_.top), {kNobody, state_.top.root}, world, mask,
             [&](const WideRef& leaf, RayMask met) HWY_ATTR {
                 each_index(state_.top, leaf, [&](std::uint32_t entry) HWY_ATTR {
                     enter(state_.entries[entry], world, met);
@@ -91,6 +94,18 @@ private:
             },
             [&](const WideRef& part, RayMask met)
                 HWY_ATTR { RaysApart(state_, rays_, query_, search_).run_down(part, met); });
+    }
+
+    // walk_group() from where the run's rays begin in the entry, which is nobody's in the top tree.
+    template <typename Leaf, typename Few>
+    HWY_INLINE void walk(const TreeMemory& tree, const TopEntry& entry, const GroupSpace& space,
+                         RayMask mask, const Leaf& leaf, const Few& few) {
+        const bool in_world = entry.object == kNobody || state_.instances[entry.object].identity;
+        RayRun::Place* const place = in_world ? run_.find(entry) : nullptr;
+        const EntryPoints* const points = place != nullptr ? run_.points(space, *place) : nullptr;
+        const std::uint32_t opened =
+            walk_group(tree, entry.part, points, space, search_.limits_in(space), mask, leaf, few);
+        if (in_world && place == nullptr) run_.opened(entry, opened);
     }
 
     // What blocked rays before, as long as rays are left, which it returns. Leaves are kept that do
@@ -372,9 +387,8 @@ private:
     template <typename Leaf>
     HWY_INLINE void search_tree(const TopEntry& entry, const GroupSpace& space, RayMask mask,
                                 const Leaf& leaf) {
-        walk_group(
-            TreeMemory(*state_.instances[entry.object].tree), entry.part, space,
-            search_.limits_in(space), mask,
+        walk(
+            TreeMemory(*state_.instances[entry.object].tree), entry, space, mask,
             [&](const WideRef& at, RayMask met) HWY_ATTR {
                 if constexpr (kAny) search_.leaf = {entry.object, at};
                 leaf(at, met);
@@ -406,6 +420,7 @@ private:
     const AccelState& state_;
     std::span<const Ray> rays_;
     const RayQuery& query_;
+    RayRun& run_;
     Group& search_;
     GroupSettle<Group> settle_;
 };

@@ -18,6 +18,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include <hwy/highway.h>
 
@@ -203,10 +204,8 @@ struct GroupCourse {
     [[nodiscard]] bool backwards() const { return forward != nullptr; }
 };
 
-// Some of these rays, all in one octant, and the intervals that hold them.
-struct GroupSpace {
-    const GroupRays& rays;
-    const GroupCourse course;
+// Intervals that hold rays which are all in one octant.
+struct GroupBounds {
     std::array<float, 3> origin_low{}, origin_high{};
     std::array<float, 3> direction_low{}, direction_high{};
     std::array<float, 3> inverse_low{}, inverse_high{};
@@ -215,12 +214,46 @@ struct GroupSpace {
     std::array<float, 3> slop{};  // boxes are widened by it
     // As near as an origin can be to a box's first plane, and as far as it can be from the second.
     std::array<float, 3> near_origin{}, far_origin{};
+    bool one_origin = false;
+
+    // What follows from the directions, of which there is one octant, and the origins.
+    // `relative_slop` is an instance's, `reach` the largest coordinate of what is to be met, and
+    // `stray` what GroupCourse has of rays that go backwards. Returns the reach with the origins'.
+    float set_planes(float relative_slop, float reach, const std::optional<float>& stray) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            // In one octant they fall as directions rise.
+            inverse_low[axis] = GroupRays::inverse_of(direction_high[axis]);
+            inverse_high[axis] = GroupRays::inverse_of(direction_low[axis]);
+            reach = std::max({reach, std::abs(origin_low[axis]), std::abs(origin_high[axis])});
+        }
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const bool negative = inverse_high[axis] < 0.0f;
+            first[axis] = negative ? 3 + axis : axis;
+            second[axis] = negative ? axis : 3 + axis;
+            octant |= std::size_t{negative ? 1u : 0u} << axis;
+            const bool flat = inverse_high[axis] >= GroupRays::kSteepest ||
+                              inverse_low[axis] <= -GroupRays::kSteepest;
+            slop[axis] = std::max(relative_slop, flat ? 0x1p-20f : kDoubleSlop) * reach;
+            // More than what rounding takes away where it is added to an origin or a plane.
+            if (stray) slop[axis] += *stray + 4.0f * 0x1p-24f * reach;
+            const float least = origin_low[axis] - slop[axis];
+            const float most = origin_high[axis] + slop[axis];
+            near_origin[axis] = negative ? least : most;
+            far_origin[axis] = negative ? most : least;
+        }
+        return reach;
+    }
+};
+
+// Some of these rays, all in one octant, and the intervals that hold them.
+struct GroupSpace : GroupBounds {
+    const GroupRays& rays;
+    const GroupCourse course;
     float steepest_direction = 0.0f;  // the largest component
     // The largest coordinate that origins were rounded from, or one whose rounding moves them as
     // far as they may stray; or 0.
     float origin_rounding = 0.0f;
     float forward_rounding = 0.0f;  // the same of the rays as they are, where these go backwards
-    bool one_origin = false;
 
     // `relative_slop` is the instance's; `reach` the largest coordinate of what is to be met.
     GroupSpace(const GroupRays& group, RayMask mask, float relative_slop, float reach,
@@ -231,30 +264,14 @@ struct GroupSpace {
             float& low = direction_low[axis];
             float& high = direction_high[axis];
             measure(rays.direction[axis], mask, low, high);
-            // In one octant they fall as directions rise.
-            inverse_low[axis] = GroupRays::inverse_of(high);
-            inverse_high[axis] = GroupRays::inverse_of(low);
             steepest_direction = std::max({steepest_direction, std::abs(low), std::abs(high)});
-            reach = std::max({reach, std::abs(origin_low[axis]), std::abs(origin_high[axis])});
         }
+        std::optional<float> stray;
+        if (course.backwards()) stray = course.stray;
+        reach = set_planes(relative_slop, reach, stray);
         constexpr float kUnit = 0x1p-24f;
         forward_rounding = relative_slop > 0.0f ? reach : 0.0f;
         origin_rounding = forward_rounding + course.stray / (6.0f * kUnit);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const bool negative = inverse_high[axis] < 0.0f;
-            first[axis] = negative ? 3 + axis : axis;
-            second[axis] = negative ? axis : 3 + axis;
-            octant |= std::size_t{negative ? 1u : 0u} << axis;
-            const bool flat = inverse_high[axis] >= GroupRays::kSteepest ||
-                              inverse_low[axis] <= -GroupRays::kSteepest;
-            slop[axis] = std::max(relative_slop, flat ? 0x1p-20f : kDoubleSlop) * reach;
-            // More than what rounding takes away where it is added to an origin or a plane.
-            if (course.backwards()) slop[axis] += course.stray + 4.0f * kUnit * reach;
-            const float least = origin_low[axis] - slop[axis];
-            const float most = origin_high[axis] + slop[axis];
-            near_origin[axis] = negative ? least : most;
-            far_origin[axis] = negative ? most : least;
-        }
     }
 
     // Below every t of interest.
