@@ -99,14 +99,11 @@ private:
     template <typename Elements>
     HWY_INLINE SphereLanes<Floats> lanes(const Elements& spheres) const {
         const Spheres d;
-        HWY_ALIGN std::array<glm::vec4, kAtOnce> rows;
-        for (std::size_t i = 0; i < rows.size(); ++i)
-            rows[i] = *spheres.row(std::min(i, spheres.size() - 1));
         Floats x;
         Floats y;
         Floats z;
         Floats radius;
-        hn::LoadInterleaved4(d, &rows[0].x, x, y, z, radius);
+        load(spheres, x, y, z, radius);
         SphereLanes<Floats> at;
         at.from_x = hn::Sub(hn::Set(d, origin_.x), x);
         at.from_y = hn::Sub(hn::Set(d, origin_.y), y);
@@ -120,6 +117,39 @@ private:
             hn::Max(hn::Max(hn::Abs(at.from_x), hn::Abs(at.from_y)), hn::Abs(at.from_z));
         set_sphere_errors(d, hn::Add(farthest, hn::Set(d, rounding_)), radius, at);
         return at;
+    }
+
+    // The last one stands in for those that there aren't.
+    template <typename Elements>
+    static HWY_INLINE void load(const Elements& spheres, Floats& x, Floats& y, Floats& z,
+                                Floats& radius) {
+        const Spheres d;
+        const auto row = [&](std::size_t i)
+                             HWY_ATTR { return &spheres.row(std::min(i, spheres.size() - 1))->x; };
+#if HWY_TARGET == HWY_SCALAR
+        x = hn::Set(d, row(0)[0]);
+        y = hn::Set(d, row(0)[1]);
+        z = hn::Set(d, row(0)[2]);
+        radius = hn::Set(d, row(0)[3]);
+#else
+        // Blocks of four numbers: the first four spheres', and the other four's in the second.
+        const auto block = [&](std::size_t i) HWY_ATTR {
+            if constexpr (kAtOnce == 8) {
+                const hn::Half<Spheres> half;
+                return hn::Combine(d, hn::LoadU(half, row(i + 4)), hn::LoadU(half, row(i)));
+            } else {
+                return hn::LoadU(d, row(i));
+            }
+        };
+        const auto even_xy = hn::InterleaveLower(d, block(0), block(2));
+        const auto even_zr = hn::InterleaveUpper(d, block(0), block(2));
+        const auto odd_xy = hn::InterleaveLower(d, block(1), block(3));
+        const auto odd_zr = hn::InterleaveUpper(d, block(1), block(3));
+        x = hn::InterleaveLower(d, even_xy, odd_xy);
+        y = hn::InterleaveUpper(d, even_xy, odd_xy);
+        z = hn::InterleaveLower(d, even_zr, odd_zr);
+        radius = hn::InterleaveUpper(d, even_zr, odd_zr);
+#endif
     }
 
     glm::vec3 origin_, direction_;
