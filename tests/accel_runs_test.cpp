@@ -5,8 +5,6 @@
 #include "tests/tracer_scenes.h"
 #include "tracer/accel/accel.h"
 
-#include <glm/vector_relational.hpp>
-
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -28,34 +26,12 @@ Scene deep_scene() {
     return scene;
 }
 
-// All in one octant of directions, with the scene in the whole image.
-std::vector<Ray> rays_into(const Accel& accel, const glm::dvec3& from) {
-    const Bounds& bounds = accel.bounds();
-    std::vector<Ray> rays;
-    for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
-        Camera camera;
-        camera.at = glm::dvec3(bounds.centre());
-        camera.eye = camera.at + from * glm::dvec3(bounds.extent());
-        camera.fovy = 30.0;
-        camera.projection = projection;
-        camera.height = 0.6 * static_cast<double>(bounds.extent().y);
-        const RayGenerator generator(camera, kImage);
-        for (const Pixel& pixel : pixels_in_squares(kImage))
-            rays.push_back(generator.ray(pixel_centre(pixel)));
-    }
-    for (const Ray& ray : rays) {
-        EXPECT_TRUE(glm::all(glm::lessThan(ray.direction * glm::vec3(from), glm::vec3(0.0f))))
-            << to_text(ray);
-    }
-    return rays;
-}
-
 // From where all may hit something.
 const glm::dvec3 kFrom(0.6, -0.4, 0.5);
 
 void expect_in_runs(const Scene& scene) {
     const Accel accel = accel_of(scene);
-    const std::vector<Ray> rays = rays_into(accel, kFrom);
+    const std::vector<Ray> rays = rays_of_one_octant(accel, kImage, kFrom);
     expect_as_one_by_one(accel, rays);
     expect_shadows_as_one_by_one(accel, rays);
 }
@@ -86,7 +62,7 @@ TEST_P(AccelRuns, ManyObjects) {
         }
     }
     const Accel accel = accel_of(scene);
-    expect_as_one_by_one(accel, rays_into(accel, kFrom));
+    expect_as_one_by_one(accel, rays_of_one_octant(accel, kImage, kFrom));
 }
 
 TEST_P(AccelRuns, SetsOfSpheres) {
@@ -104,7 +80,7 @@ TEST_P(AccelRuns, SetsOfSpheres) {
 // the image or begin elsewhere, in the octant of the others.
 TEST_P(AccelRuns, RaysUnlikeTheOthers) {
     const Accel accel = accel_of(deep_scene());
-    std::vector<Ray> rays = rays_into(accel, kFrom);
+    std::vector<Ray> rays = rays_of_one_octant(accel, kImage, kFrom);
     for (std::size_t first = 0; first + 64 <= rays.size(); first += 64) {
         const std::size_t odd = first + 1 + first / 64 % 18;
         const std::size_t other = (first + 2048 + 29) % rays.size();
@@ -121,7 +97,7 @@ TEST_P(AccelRuns, RaysUnlikeTheOthers) {
 // The corners say nothing of the rest, or what they say is no number.
 TEST_P(AccelRuns, CornersUnlikeTheOthers) {
     const Accel accel = accel_of(deep_scene());
-    std::vector<Ray> rays = rays_into(accel, kFrom);
+    std::vector<Ray> rays = rays_of_one_octant(accel, kImage, kFrom);
     for (std::size_t i = 0; i < rays.size(); i += 64) {
         const std::size_t kind = i / 1024 % 4;
         if (kind == 0) rays[i].direction = -rays[i].direction;

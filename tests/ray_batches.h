@@ -6,6 +6,8 @@
 #include "tracer/accel/accel.h"
 #include "tracer/geometry/camera.h"
 
+#include <glm/vector_relational.hpp>
+
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -31,6 +33,30 @@ inline std::vector<Ray> coherent_rays(const Bounds& bounds, ImageSize size, Proj
         const RayGenerator generator(camera, size);
         for (const Pixel& pixel : pixels_in_squares(size))
             rays.push_back(generator.ray(pixel_centre(pixel)));
+    }
+    return rays;
+}
+
+// All in one octant of directions, from as many of its extents beside the scene's centre, which
+// fills the image.
+inline std::vector<Ray> rays_of_one_octant(const Accel& accel, ImageSize size,
+                                           const glm::dvec3& from) {
+    const Bounds& bounds = accel.bounds();
+    std::vector<Ray> rays;
+    for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+        Camera camera;
+        camera.at = glm::dvec3(bounds.centre());
+        camera.eye = camera.at + from * glm::dvec3(bounds.extent());
+        camera.fovy = 30.0;
+        camera.projection = projection;
+        camera.height = 0.6 * static_cast<double>(bounds.extent().y);
+        const RayGenerator generator(camera, size);
+        for (const Pixel& pixel : pixels_in_squares(size))
+            rays.push_back(generator.ray(pixel_centre(pixel)));
+    }
+    for (const Ray& ray : rays) {
+        EXPECT_TRUE(glm::all(glm::lessThan(ray.direction * glm::vec3(from), glm::vec3(0.0f))))
+            << to_text(ray);
     }
     return rays;
 }

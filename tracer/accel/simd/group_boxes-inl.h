@@ -89,8 +89,7 @@ HWY_INLINE void meet_group(const GroupBounds& space, const WideNode& node, float
 }
 
 // Places in a tree that lie in the way of many groups, so that each can begin there and not at the
-// root: nodes that are of no tree, whose children are these places. Not initialised, as it is
-// large.
+// root: nodes that are of no tree, whose children are these places.
 //
 // Source: Reshetov et al. 2005 (see above), which has a single one.
 struct EntryPoints {
@@ -105,7 +104,7 @@ struct EntryPoints {
     // opened level by level, near ones first, as long as there is room.
     EntryPoints(const TreeMemory& tree, const WideRef& start, const GroupBounds& bounds,
                 float t_least) {
-        std::array<Place, kMost + 1> places[2];  // NOLINT: not initialised
+        std::array<Place, kMost> places[2];  // NOLINT: not initialised
         std::size_t found = open(tree.node(start), bounds, t_least, places[0].data());
         std::size_t now = 0;
         for (bool opened = true; opened; now = 1 - now) {
@@ -133,7 +132,7 @@ private:
         std::uint32_t child;
     };
 
-    // The children that are met, near ones first. Writes one more than there are.
+    // The children that are met, near ones first. Writes up to kWidth, whatever it returns.
     static std::size_t open(const WideNode& node, const GroupBounds& bounds, float t_least,
                             Place* to) {
         BoxIntervals boxes;  // NOLINT: not initialised, as all are set
@@ -297,7 +296,8 @@ struct WaitingChildren {
 };
 
 // Calls leaf(ref, mask) for leaves that the rays may meet, near ones first, and few(ref, mask) for
-// what is left of the tree below a place where no more than kFewRays go on together.
+// what is left of the tree below a place where no more than kFewRays go on together. Begins at
+// `start`, or at the points if they aren't null. Returns how many of the tree's nodes were opened.
 template <typename Leaf, typename Few>
 std::uint32_t walk_group(const TreeMemory& tree, const WideRef& start, const EntryPoints* points,
                          const GroupSpace& space, const GroupLimits& limits, RayMask rays,
@@ -313,7 +313,6 @@ std::uint32_t walk_group(const TreeMemory& tree, const WideRef& start, const Ent
         if (points != nullptr) {
             for (std::size_t i = points->count; i-- > 0;)
                 waiting.push(space, {&points->nodes[i], rays, far, leaves});
-            waiting.fetch_next(tree);
             points = nullptr;
         } else if (at.is_leaf()) {
             leaf(at, rays);

@@ -105,7 +105,7 @@ private:
         const EntryPoints* const points = place != nullptr ? run_.points(space, *place) : nullptr;
         const std::uint32_t opened =
             walk_group(tree, entry.part, points, space, search_.limits_in(space), mask, leaf, few);
-        if (in_world && place == nullptr) run_.opened(entry, opened);
+        if (in_world && place == nullptr) run_.opened(space, entry, opened);
     }
 
     // What blocked rays before, as long as rays are left, which it returns. Leaves are kept that do

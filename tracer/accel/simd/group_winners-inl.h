@@ -13,36 +13,161 @@
 #include "tracer/accel/simd/single_ray-inl.h"
 #include "tracer/accel/simd/sole_elements-inl.h"
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <variant>
 
 HWY_BEFORE_NAMESPACE();
 namespace raypick::HWY_NAMESPACE {
 
-// The winner among a ray's candidate and its rivals by the tie rule of hit.h.
-inline void choose(const AccelState& state, const ClosestOfGroup& search, std::size_t ray,
-                   const Ray& from, const RayQuery& query, Hit& hit) {
-    const auto offer_all = [&](auto& one) HWY_ATTR {
-        if (((search.found >> ray) & 1) != 0) {
-            const Candidate& candidate = search.candidate_of(ray);
-            trace_primitive(state, candidate.object, candidate.primitive, from, query, one);
-        }
-        for (std::size_t i = 0; i < search.rival_count; ++i) {
-            const RayAndPrimitive& rival = search.rivals[i];
-            if (rival.ray != ray) continue;
-            trace_primitive(state, rival.object, rival.primitive, from, query, one);
-        }
-    };
-    ClosestSearch closest(from.t_max);
+// The winner by the tie rule of hit.h among what offer_all(search) offers, twice if need be.
+template <typename OfferAll>
+HWY_INLINE Hit winner_of(float t_max, const OfferAll& offer_all) {
+    ClosestSearch closest(t_max);
     offer_all(closest);
-    if (!closest.winner().valid() || !closest.ambiguous()) {
-        hit = closest.winner();
-        return;
-    }
+    if (!closest.winner().valid() || !closest.ambiguous()) return closest.winner();
     LowestInWindow lowest(closest.limit());
     offer_all(lowest);
-    hit = lowest.winner();
+    return lowest.winner();
 }
+
+// Calls body(object, primitive) for a ray's candidate and its rivals.
+template <typename Body>
+HWY_INLINE void each_rival(const ClosestOfGroup& search, std::size_t ray, const Body& body) {
+    if (((search.found >> ray) & 1) != 0) {
+        const Candidate& candidate = search.candidate_of(ray);
+        body(candidate.object, candidate.primitive);
+    }
+    for (std::size_t i = 0; i < search.rival_count; ++i) {
+        const RayAndPrimitive& rival = search.rivals[i];
+        if (rival.ray == ray) body(rival.object, rival.primitive);
+    }
+}
+
+// The winner among a ray's candidate and its rivals.
+inline Hit choose(const AccelState& state, const ClosestOfGroup& search, std::size_t ray,
+                  const Ray& from, const RayQuery& query) {
+    return winner_of(from.t_max, [&](auto& one) HWY_ATTR {
+        each_rival(search, ray, [&](std::uint32_t object, std::uint32_t primitive) HWY_ATTR {
+            trace_primitive(state, object, primitive, from, query, one);
+        });
+    });
+}
+
+// The same of many rays, as far as all that each may hit are triangles of meshes without holes:
+// several at once. Each is surely hit, or was found to be, so that it has an area.
+class RivalTriangles {
+public:
+    RivalTriangles(const AccelState& state, const ClosestOfGroup& search, std::span<const Ray> rays,
+                   const RayQuery& query)
+        : state_(state), search_(search), rays_(rays), query_(query) {}
+
+    // Those that it doesn't decide stay in the mask that it returns.
+    HWY_NOINLINE RayMask decide(RayMask mask, std::span<Hit> hits) const {
+        RayMask left = 0;
+        std::array<Met, kMost> all;
+        while (mask != 0) {
+            // As many rays as are sure to have room, one after the other.
+            std::size_t count = 0;
+            RayMask taken = 0;
+            for (; mask != 0 && count < kEnough; mask &= mask - 1) {
+                const auto ray = static_cast<std::size_t>(std::countr_zero(mask));
+                const std::size_t added = gather(ray, all.data() + count);
+                (added != 0 ? taken : left) |= RayMask{1} << ray;
+                count += added;
+            }
+            meet({all.data(), count});
+            std::span<const Met> rest(all.data(), count);
+            each_ray(taken, [&](std::size_t ray) HWY_ATTR {
+                std::size_t its_own = 0;
+                while (its_own < rest.size() && rest[its_own].ray == ray)
+                    ++its_own;
+                hits[ray] = winner(ray, rest.first(its_own));
+                rest = rest.subspan(its_own);
+            });
+        }
+        return left;
+    }
+
+private:
+    // A ray with more than that is left to others.
+    static constexpr std::size_t kMostOfRay = 8;
+    static constexpr std::size_t kEnough = kDoublesAtOnce;
+    static constexpr std::size_t kMost = kEnough + kMostOfRay;
+
+    struct Met {
+        std::size_t ray;
+        std::uint32_t object;  // index
+        const Mesh* mesh;
+        Hit hit;  // its triangle, and what else there is if it is hit
+        bool is_hit;
+    };
+
+    // Returns how many; 0 if this isn't for it.
+    std::size_t gather(std::size_t ray, Met* to) const {
+        std::size_t count = 0;
+        bool fine = true;
+        each_rival(search_, ray, [&](std::uint32_t object, std::uint32_t primitive) HWY_ATTR {
+            const Scene& scene = *state_.scene;
+            const auto* mesh = std::get_if<MeshInstance>(&scene.objects[object].shape);
+            fine = fine && mesh != nullptr && !state_.instances[object].holes && count < kMostOfRay;
+            if (!fine) return;
+            Met& met = to[count++];
+            met.ray = ray;
+            met.object = object;
+            met.mesh = &scene.meshes[mesh->mesh];
+            met.hit = {scene.objects[object].id, primitive};
+        });
+        return fine ? count : 0;
+    }
+
+    void meet(std::span<Met> all) const {
+        TrianglePairs pairs;
+        TriangleAnswers answers;
+        for (std::size_t first = 0; first < all.size(); first += kDoublesAtOnce) {
+            const auto some = all.subspan(first, std::min(kDoublesAtOnce, all.size() - first));
+            for (std::size_t lane = 0; lane < some.size(); ++lane) {
+                const Met& met = some[lane];
+                const glm::uvec3& corner = met.mesh->triangles[met.hit.primitive];
+                const auto& positions = met.mesh->positions;
+                set_ray(state_.instances[met.object], rays_[met.ray], lane, pairs);
+                pairs.set_corners(lane, positions[corner.x], positions[corner.y],
+                                  positions[corner.z]);
+            }
+            pairs.fill_from(some.size());
+            HWY_NAMESPACE::decide(TriangleColumns(pairs), answers);
+            for (std::size_t lane = 0; lane < some.size(); ++lane)
+                set_answer(answers, lane, some[lane]);
+        }
+    }
+
+    HWY_INLINE void set_answer(const TriangleAnswers& answers, std::size_t lane, Met& met) const {
+        const Sides sides = state_.scene->objects[met.object].sides;
+        Hit& hit = met.hit;
+        hit.front_face = answers.hits_front(lane);
+        hit.t = answers.t[lane];
+        hit.uv = {answers.u[lane], answers.v[lane]};
+        met.is_hit = answers.hits(lane, rays_[met.ray].t_min, rays_[met.ray].t_max) &&
+                     shows(sides, hit.front_face) && shows(query_.sides, hit.front_face);
+    }
+
+    [[nodiscard]] Hit winner(std::size_t ray, std::span<const Met> its_own) const {
+        return winner_of(rays_[ray].t_max, [&](auto& one) HWY_ATTR {
+            for (const Met& met : its_own) {
+                if (met.is_hit && met.hit.t <= one.limit()) one.offer(met.hit);
+            }
+        });
+    }
+
+    const AccelState& state_;
+    const ClosestOfGroup& search_;
+    std::span<const Ray> rays_;
+    const RayQuery& query_;
+};
 
 // Candidates of rays without rivals as far as they are triangles, several at once.
 class SoleTriangles {
@@ -202,10 +327,12 @@ inline void decide_winners(const AccelState& state, const ClosestOfGroup& search
                            std::span<const Ray> rays, const RayQuery& query, std::span<Hit> hits) {
     const RayMask sole = search.found & ~search.rivalled;
     const RayMask elements = SoleTriangles(state, search, world, limits, rays, hits).decide(sole);
-    RayMask open = search.rivalled & ~search.lost;
+    const RayMask rivalled = search.rivalled & ~search.lost;
+    RayMask open = 0;
+    if (rivalled != 0) open = RivalTriangles(state, search, rays, query).decide(rivalled, hits);
     open |= decide_sole_elements(state, search, elements, world, rays, query, hits);
     each_ray(open, [&](std::size_t ray)
-                       HWY_ATTR { choose(state, search, ray, rays[ray], query, hits[ray]); });
+                       HWY_ATTR { hits[ray] = choose(state, search, ray, rays[ray], query); });
 }
 
 }  // namespace raypick::HWY_NAMESPACE

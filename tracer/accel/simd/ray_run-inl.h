@@ -42,8 +42,8 @@ public:
         std::optional<EntryPoints> points;
     };
 
-    // Of rays up to as many. `end`: where they end, if it isn't null, and may be followed backwards
-    // from. All must outlive it.
+    // Of up to kMostRays rays. `end`: where they end, if it isn't null, and may be followed
+    // backwards from. All must outlive it.
     RayRun(const AccelState& state, std::span<const Ray> rays, const glm::vec3* end)
         : state_(state), rays_(rays), end_(end) {}
 
@@ -65,8 +65,8 @@ public:
     }
 
     // A group opened so many nodes of what is no place yet.
-    HWY_INLINE void opened(const TopEntry& entry, std::uint32_t nodes) {
-        if (nodes >= kWorthwhile && count_ < most_) add(entry);
+    HWY_INLINE void opened(const GroupSpace& space, const TopEntry& entry, std::uint32_t nodes) {
+        if (nodes >= kWorthwhile && count_ < most_ && goes_this_way(space)) add(entry);
     }
 
 private:
@@ -95,9 +95,14 @@ private:
                              entry.part, bounds_, t_least_);
     }
 
+    // Backwards or not.
+    [[nodiscard]] bool goes_this_way(const GroupSpace& space) const {
+        return space.course.backwards() == (end_ != nullptr);
+    }
+
     // Arranged so that a NaN makes it false.
     [[nodiscard]] bool holds(const GroupSpace& space) const {
-        bool all = space.octant == bounds_.octant && space.course.backwards() == (end_ != nullptr);
+        bool all = space.octant == bounds_.octant && goes_this_way(space);
         for (std::size_t axis = 0; axis < 3; ++axis) {
             all &= space.origin_low[axis] >= bounds_.origin_low[axis];
             all &= space.origin_high[axis] <= bounds_.origin_high[axis];
