@@ -47,9 +47,9 @@ inline std::vector<Ray> rays_of_one_octant(const Accel& accel, ImageSize size,
         Camera camera;
         camera.at = glm::dvec3(bounds.centre());
         camera.eye = camera.at + from * glm::dvec3(bounds.extent());
-        camera.fovy = 30.0;
+        camera.fovy = 12.0;
         camera.projection = projection;
-        camera.height = 0.6 * static_cast<double>(bounds.extent().y);
+        camera.height = 0.25 * static_cast<double>(bounds.extent().y);
         const RayGenerator generator(camera, size);
         for (const Pixel& pixel : pixels_in_squares(size))
             rays.push_back(generator.ray(pixel_centre(pixel)));
