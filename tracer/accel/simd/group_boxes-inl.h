@@ -96,8 +96,8 @@ struct EntryPoints {
     static constexpr std::size_t kMost = 32;
     static constexpr std::size_t kMostNodes = kMost / kWidth;
 
-    std::array<WideNode, kMostNodes>
-        nodes;          // from near to far, and their children from far to near
+    // From near to far, and their children from far to near.
+    std::array<WideNode, kMostNodes> nodes;
     std::size_t count;  // of them
 
     // Of what lies below `start` and rays within the bounds may meet from t_least on. Nodes are
@@ -225,7 +225,7 @@ HWY_INLINE float farthest(const GroupLimits& limits, RayMask mask) {
 // Children that some ray of a group may meet, in its way through a tree. Which rays do is asked
 // when their turn comes: most rays may end before. Not initialised, as it is large.
 struct WaitingChildren {
-    // Of the tree, and those of a list of ways in.
+    // Of the tree and its entry points.
     static constexpr std::size_t kMostParents = Bvh::kMaxDepth + 1 + EntryPoints::kMostNodes;
     static constexpr std::size_t kMost = WideBvh::kMostWaiting + EntryPoints::kMost;
 
