@@ -38,6 +38,8 @@ struct Instance {
 struct TopEntry {
     std::uint32_t object = 0;  // index of the instance
     WideRef part;
+
+    friend bool operator==(const TopEntry&, const TopEntry&) = default;
 };
 
 struct AccelState {

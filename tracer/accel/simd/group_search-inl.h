@@ -112,7 +112,7 @@ public:
     // `leaf` is given as a part of its object.
     void add(const TopEntry& leaf) {
         for (const TopEntry& known : leaves()) {
-            if (known.object == leaf.object && known.part.bits == leaf.part.bits) return;
+            if (known == leaf) return;
         }
         leaves_[next_] = leaf;
         next_ = (next_ + 1) % kMost;

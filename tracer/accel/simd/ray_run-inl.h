@@ -50,8 +50,7 @@ public:
     // Null if it isn't one.
     [[nodiscard]] HWY_INLINE Place* find(const TopEntry& entry) {
         for (std::size_t i = 0; i < count_; ++i) {
-            const TopEntry& known = places_[i].entry;
-            if (known.object == entry.object && known.part == entry.part) return &places_[i];
+            if (places_[i].entry == entry) return &places_[i];
         }
         return nullptr;
     }
